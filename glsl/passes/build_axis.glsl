@@ -1,0 +1,66 @@
+// Compute pass: functions of one axis from running column sums (`build_axis` on the host).
+//
+// Dispatch one work group per row. Reads the sums of column_sums.glsl, takes the window of 2r + 1
+// rows around its own as a difference, scans it, and writes the w + 1 nodes of its function.
+// Include warpshadow/warp_build.glsl before.
+#ifndef WS_BINDING_SUMS
+#define WS_BINDING_SUMS 0
+#endif
+#ifndef WS_BINDING_TABLE
+#define WS_BINDING_TABLE 1
+#endif
+#define WS_BUILD_GROUP 128
+
+layout(local_size_x = WS_BUILD_GROUP) in;
+
+layout(r32ui, binding = WS_BINDING_SUMS) uniform readonly uimage2D ws_sums;
+layout(r32f, binding = WS_BINDING_TABLE) uniform writeonly image2D ws_table;
+
+uniform int ws_radius;  // half-width of the window, from ws_window_radius
+uniform float ws_floor; // density floor
+
+shared uint ws_partial[WS_BUILD_GROUP];
+
+uint ws_window_count(int i, int row, int last)
+{
+    uint count = imageLoad(ws_sums, ivec2(i, min(row + ws_radius, last))).r;
+    if (row > ws_radius) {
+        count -= imageLoad(ws_sums, ivec2(i, row - ws_radius - 1)).r;
+    }
+    return count;
+}
+
+void main()
+{
+    ivec2 cells = imageSize(ws_sums);
+    int row = int(gl_WorkGroupID.x);
+    int lane = int(gl_LocalInvocationID.x);
+    int per_lane = (cells.x + WS_BUILD_GROUP - 1) / WS_BUILD_GROUP;
+    int first = min(lane * per_lane, cells.x);
+    int end = min(first + per_lane, cells.x);
+
+    uint sum = 0u;
+    for (int i = first; i < end; ++i) {
+        sum += ws_window_count(i, row, cells.y - 1);
+    }
+    ws_partial[lane] = sum;
+    barrier();
+    for (int step = 1; step < WS_BUILD_GROUP; step *= 2) {
+        uint other = lane >= step ? ws_partial[lane - step] : 0u;
+        barrier();
+        ws_partial[lane] += other;
+        barrier();
+    }
+    uint total = ws_partial[WS_BUILD_GROUP - 1];
+    uint before = ws_partial[lane] - sum;
+
+    for (int k = first; k < end; ++k) {
+        imageStore(ws_table, ivec2(k, row),
+                   vec4(ws_warp_node(before, total, k, cells.x, ws_floor)));
+        before += ws_window_count(k, row, cells.y - 1);
+    }
+    if (lane == 0) {
+        imageStore(ws_table, ivec2(cells.x, row),
+                   vec4(ws_warp_node(total, total, cells.x, cells.x, ws_floor)));
+    }
+}
