@@ -1,0 +1,347 @@
+// warpshadow-lab: renders scenes with shadow-mapping methods, counts the pixels that each gets
+// wrong against ray tracing, and writes a report.
+#include "gl/context.hpp"
+#include "gl/timer.hpp"
+#include "lab/measure.hpp"
+#include "lab/methods.hpp"
+#include "lab/options.hpp"
+#include "lab/picture.hpp"
+#include "lab/report.hpp"
+#include "lab/report_folder.hpp"
+#include "lab/results.hpp"
+#include "lab/scene.hpp"
+#include "lab/truth.hpp"
+
+#include <epoxy/gl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cctype>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace {
+
+std::atomic<int> stop_signal{0};
+
+void on_signal(int number) {
+    stop_signal = number;
+}
+
+/// A scene with the views that were asked for.
+struct job {
+    lab::scene world;
+    std::vector<lab::camera_view> cameras;
+    std::vector<lab::light_view> lights;
+};
+
+/// One line on stderr that is redrawn, if that is a terminal.
+class progress_bar {
+  public:
+    explicit progress_bar(std::size_t steps)
+        : steps_(std::max<std::size_t>(steps, 1)), visible_(::isatty(STDERR_FILENO) == 1) {}
+    ~progress_bar() {
+        if (visible_) {
+            std::fputs("\r\x1b[K", stderr);
+        }
+    }
+    progress_bar(const progress_bar&) = delete;
+    progress_bar& operator=(const progress_bar&) = delete;
+
+    void show(const std::string& doing) {
+        if (!visible_) {
+            return;
+        }
+        constexpr std::size_t width = 30;
+        const std::size_t full = width * std::min(done_, steps_) / steps_;
+        std::fprintf(stderr, "\r\x1b[K[%s%s] %zu/%zu %s", std::string(full, '#').c_str(),
+                     std::string(width - full, '.').c_str(), done_, steps_, doing.c_str());
+        std::fflush(stderr);
+    }
+    void advance() { ++done_; }
+
+  private:
+    std::size_t steps_;
+    std::size_t done_ = 0;
+    bool visible_;
+};
+
+void list_scenes(unsigned seed) {
+    for (const lab::scene_summary& summary : lab::builtin_scenes()) {
+        const lab::scene world = lab::build_scene(summary.name, seed);
+        std::printf("%s: %s\n  %zu triangles\n", world.name.c_str(),
+                    std::string(summary.about).c_str(), world.triangles.size());
+        for (const lab::camera_view& camera : world.cameras) {
+            std::printf("  --camera %s  %s\n", camera.label.c_str(),
+                        lab::camera_text(camera).c_str());
+        }
+        for (const lab::light_view& light : world.lights) {
+            std::printf("  --light %s   %s\n", light.label.c_str(), lab::light_text(light).c_str());
+        }
+    }
+}
+
+std::vector<job> open_jobs(const lab::options& wanted) {
+    std::vector<job> jobs;
+    for (const std::string& name : wanted.scenes) {
+        job next{lab::open_scene(name, wanted.seed), {}, {}};
+        for (const std::string& camera : wanted.cameras) {
+            next.cameras.push_back(lab::resolve_camera(camera, next.world));
+        }
+        for (const std::string& light : wanted.lights) {
+            next.lights.push_back(lab::resolve_light(light, next.world));
+        }
+        jobs.push_back(std::move(next));
+    }
+    return jobs;
+}
+
+/// Refuses sizes that this OpenGL cannot hold, before anything is rendered.
+void check_limits(const lab::options& wanted) {
+    GLint side = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+    std::array<GLint, 2> viewport{};
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+    // warp tables have one node more than the map has texels
+    const int largest_map = std::min({side - 1, viewport[0], viewport[1]});
+    for (const int map : wanted.maps) {
+        if (map > largest_map) {
+            throw lab::bad_input("--map " + std::to_string(map) +
+                                 " is too large: this OpenGL takes up to " +
+                                 std::to_string(largest_map));
+        }
+    }
+    if (wanted.view.x > std::min(side, viewport[0]) ||
+        wanted.view.y > std::min(side, viewport[1])) {
+        throw lab::bad_input("--view " + std::to_string(wanted.view.x) + "x" +
+                             std::to_string(wanted.view.y) +
+                             " is too large: this OpenGL takes up to " +
+                             std::to_string(std::min(side, viewport[0])) + "x" +
+                             std::to_string(std::min(side, viewport[1])));
+    }
+}
+
+/// The ray tracer as a method: its own truth, timed.
+lab::method_result run_ray_tracer(const lab::ray_tracer& rays, const lab::scene& world,
+                                  const lab::g_buffer_samples& samples,
+                                  const lab::light_view& light, int repeat) {
+    lab::method_result result{};
+    std::vector<double> times;
+    for (int i = 0; i < repeat; ++i) {
+        lab::traced_shadows traced = rays.shadows(samples, light);
+        times.push_back(traced.ms);
+        result.shadowed = std::move(traced.shadowed);
+    }
+    std::sort(times.begin(), times.end());
+    const std::size_t middle = times.size() / 2;
+    const double median =
+        times.size() % 2 == 1 ? times[middle] : 0.5 * (times[middle - 1] + times[middle]);
+    result.frame_ms_median = samples.draw_ms + median;
+    result.frame_ms_min = samples.draw_ms + times.front();
+    result.frame_ms_max = samples.draw_ms + times.back();
+    result.frames = repeat;
+    result.passes = {{"g-buffer", samples.draw_ms}, {"rays", median}};
+    result.bytes = rays.bytes();
+    result.triangles = world.triangles.size();
+    return result;
+}
+
+std::string file_name(std::initializer_list<std::string> parts) {
+    std::string name;
+    for (const std::string& part : parts) {
+        name += name.empty() ? "" : "-";
+        for (const char c : part) {
+            const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
+                               c == '-' || c == '_';
+            name += plain ? c : '_';
+        }
+    }
+    return name + ".png";
+}
+
+/// Runs everything on one view and keeps its pictures.
+class view_runner {
+  public:
+    view_runner(const lab::options& wanted, lab::results& all, lab::report_folder& folder,
+                progress_bar& progress)
+        : wanted_(wanted), all_(all), folder_(folder), progress_(progress) {}
+
+    lab::view_pictures run(const job& work, lab::renderer& renderer, const lab::ray_tracer& rays,
+                           const lab::camera_view& camera, const lab::light_view& light) {
+        const lab::g_buffer_samples samples = renderer.samples(camera, light);
+        const lab::traced_shadows truth = rays.shadows(samples, light);
+        const std::size_t first = all_.runs.size();
+        for (const int map : wanted_.maps) {
+            for (const std::string& method : wanted_.methods) {
+                const bool traces = method == "raytraced";
+                if ((traces && map != wanted_.maps.front()) || renderer.why_not(method, light)) {
+                    continue;
+                }
+                if (stop_signal != 0) {
+                    throw std::runtime_error("interrupted");
+                }
+                progress_.show(work.world.name + " " + method +
+                               (traces ? std::string() : std::string(" ") + std::to_string(map)));
+                lab::run_record record{work.world.name,  camera.label, light.label, method,
+                                       traces ? 0 : map, {},           {}};
+                record.result =
+                    traces
+                        ? run_ray_tracer(rays, work.world, samples, light, wanted_.repeat)
+                        : renderer.run(method, {camera, light, map, wanted_.seed, wanted_.repeat});
+                record.against_truth =
+                    lab::compare(samples, truth.shadowed, record.result.shadowed);
+                all_.runs.push_back(std::move(record));
+                progress_.advance();
+            }
+        }
+        return pictures(work, rays, samples, truth, camera, light, first);
+    }
+
+  private:
+    lab::view_pictures pictures(const job& work, const lab::ray_tracer& rays,
+                                const lab::g_buffer_samples& samples,
+                                const lab::traced_shadows& truth, const lab::camera_view& camera,
+                                const lab::light_view& light, std::size_t first) {
+        progress_.show(work.world.name + " pictures");
+        const lab::shader shader(work.world, rays, samples, camera, light);
+        std::vector<std::span<const std::uint8_t>> marks;
+        for (std::size_t i = first; i < all_.runs.size(); ++i) {
+            if (all_.runs[i].map != 0) {
+                marks.emplace_back(all_.runs[i].against_truth.wrong);
+            }
+        }
+        constexpr int zoom = 3;
+        const glm::ivec2 window = glm::max(samples.size / 4, glm::ivec2(1));
+        const glm::ivec2 corner = lab::window_of_difference(marks, samples.size, window);
+
+        const std::string c = std::string("c") + camera.label;
+        const std::string l = std::string("l") + light.label;
+        const lab::picture reference = shader.shade(truth.shadowed);
+        lab::view_pictures view{
+            work.world.name,        camera.label, light.label, lab::camera_text(camera),
+            lab::light_text(light), {},           {},          {}};
+        view.reference = write(file_name({work.world.name, c, l, "raytraced"}), reference);
+        view.reference_detail = lab::png_of(lab::cropped(reference, corner, window, zoom));
+        for (std::size_t i = first; i < all_.runs.size(); ++i) {
+            lab::run_record& run = all_.runs[i];
+            lab::run_pictures seen{i, {}, {}, {}, {}};
+            if (run.map != 0) {
+                const std::string map = std::string("m") + std::to_string(run.map);
+                const auto name = [&](const std::string& kind) {
+                    return file_name({work.world.name, c, l, map, run.method + kind});
+                };
+                const lab::picture plain = shader.shade(run.result.shadowed);
+                lab::picture marked = plain;
+                lab::paint_red(marked, run.against_truth.wrong);
+                write(name(""), plain);
+                seen.marked = write(name("-wrong"), marked);
+                seen.detail = write(name("-detail"), lab::cropped(plain, corner, window, zoom));
+                seen.detail_marked =
+                    write(name("-detail-wrong"), lab::cropped(marked, corner, window, zoom));
+                for (lab::named_picture& each : run.result.pictures) {
+                    lab::png_file file = write(name(std::string("-") + each.name),
+                                               {each.width, each.height, std::move(each.rgb)});
+                    seen.explanations.emplace_back(each.name, std::move(file));
+                }
+            }
+            view.runs.push_back(std::move(seen));
+            // one value per pixel, which nothing needs any more
+            run.result.pictures.clear();
+            run.result.shadowed = {};
+            run.against_truth.wrong = {};
+        }
+        return view;
+    }
+
+    lab::png_file write(const std::string& name, const lab::picture& source) {
+        lab::png_file file = lab::png_of(source);
+        folder_.write(name, file.bytes);
+        return file;
+    }
+
+    const lab::options& wanted_;
+    lab::results& all_;
+    lab::report_folder& folder_;
+    progress_bar& progress_;
+};
+
+void run_lab(const lab::options& wanted) {
+    const std::vector<job> jobs = open_jobs(wanted);
+    lab::report_folder folder(wanted.out);
+    const gl::headless_context context;
+    check_limits(wanted);
+
+    lab::results all;
+    all.renderer = context.info().renderer;
+    all.version = context.info().version;
+    all.timing = gl::timing_name(gl::best_timing());
+    all.view = wanted.view;
+    std::size_t steps = 0;
+    for (const job& work : jobs) {
+        steps +=
+            work.cameras.size() * work.lights.size() * wanted.methods.size() * wanted.maps.size();
+    }
+    std::vector<lab::view_pictures> views;
+    {
+        progress_bar progress(steps);
+        for (const job& work : jobs) {
+            progress.show(work.world.name);
+            lab::renderer renderer(work.world, wanted.view);
+            const lab::ray_tracer rays(work.world);
+            for (const lab::light_view& light : work.lights) {
+                for (const std::string& method : wanted.methods) {
+                    if (const auto reason = renderer.why_not(method, light)) {
+                        all.left_out.push_back({work.world.name, light.label, method, *reason});
+                    }
+                }
+            }
+            view_runner runner(wanted, all, folder, progress);
+            for (const lab::camera_view& camera : work.cameras) {
+                for (const lab::light_view& light : work.lights) {
+                    views.push_back(runner.run(work, renderer, rays, camera, light));
+                }
+            }
+        }
+        progress.show("report");
+        folder.write("results.json", lab::json_of(all));
+        folder.write("report.html", lab::html_of(all, views));
+    }
+    const std::filesystem::path place = folder.publish();
+    std::fputs(lab::table_of(all).c_str(), stdout);
+    std::printf("%s\n", (place / "report.html").c_str());
+}
+
+int fail(const char* what, int code) {
+    std::fprintf(stderr, "warpshadow-lab: %s\n", what);
+    return code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    try {
+        const std::optional<lab::options> wanted =
+            lab::parse_options(argc, argv, lab::method_names());
+        if (!wanted) {
+            return 0;
+        }
+        if (wanted->list_scenes) {
+            list_scenes(wanted->seed);
+            return 0;
+        }
+        run_lab(*wanted);
+        return 0;
+    } catch (const lab::bad_input& error) {
+        return fail(error.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory", 1);
+    } catch (const std::exception& error) {
+        return fail(error.what(), 1);
+    }
+}

@@ -1,0 +1,92 @@
+// Shadow methods on the GPU, as the lab runs and measures them.
+#pragma once
+
+#include "lab/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace lab {
+
+/// One measurement that is asked for.
+struct view_request {
+    camera_view camera;
+    light_view light;
+    int map_size;  ///< texels along each side of the shadow map
+    unsigned seed; ///< of anything random
+    int repeat;    ///< frames timed after the warm-up
+};
+
+/// View samples, row 0 at the bottom of the picture.
+struct g_buffer_samples {
+    glm::ivec2 size;
+    std::vector<glm::vec4> position; ///< world; w = 1 where a surface is seen, 0 for background
+    std::vector<glm::vec3> normal;   ///< of the face, unit length, towards the viewer
+    std::vector<float> n_dot_l; ///< 0 or less where the light does not reach (also outside a cone)
+    double draw_ms;             ///< time of drawing the G-buffer alone
+};
+
+/// Time of one pass, median over the frames.
+struct pass_time {
+    std::string pass;
+    double ms;
+};
+
+/// A picture that explains a method (importance map, warp grid), row 0 at the top.
+struct named_picture {
+    std::string name;
+    int width;
+    int height;
+    std::vector<std::uint8_t> rgb;
+};
+
+/// What a method did.
+struct method_result {
+    std::vector<std::uint8_t> shadowed; ///< per view sample: 1 = in shadow
+    double frame_ms_median;
+    double frame_ms_min;
+    double frame_ms_max;
+    int frames; ///< how many the three times above are over
+    std::vector<pass_time> passes;
+    std::vector<std::pair<std::string, double>> cpu_setup_us;
+    std::size_t bytes;     ///< of GPU memory that the method needs beyond mesh and G-buffer
+    std::size_t triangles; ///< rasterised into the shadow map
+    std::vector<std::string> status; ///< names of the guards that fired
+    std::vector<named_picture> pictures;
+};
+
+/// Holds one scene on the GPU and renders its G-buffer and shadows.
+class renderer {
+  public:
+    renderer(const scene& world, glm::ivec2 view);
+    ~renderer();
+    renderer(const renderer&) = delete;
+    renderer& operator=(const renderer&) = delete;
+
+    g_buffer_samples samples(const camera_view& camera, const light_view& light);
+
+    /// Why the method does not apply to the light, or nothing when it does.
+    [[nodiscard]] std::optional<std::string> why_not(std::string_view method,
+                                                     const light_view& light) const;
+
+    /// Runs a method other than "raytraced", which needs no GPU.
+    method_result run(std::string_view method, const view_request& request);
+
+  private:
+    struct state;
+    std::unique_ptr<state> state_;
+};
+
+/// sm, dv, notw, notw-nodv, raytraced.
+std::span<const std::string_view> method_names();
+
+} // namespace lab

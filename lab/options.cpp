@@ -1,0 +1,319 @@
+#include "lab/options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace lab {
+namespace {
+
+constexpr const char* examples = R"(Cameras and lights:
+  a number takes a view that the scene brings (see --list-scenes);
+  --camera ex,ey,ez,tx,ty,tz,fov      eye, target, vertical field of view in degrees
+  --light sun:dx,dy,dz                direction in which the light travels
+  --light spot:x,y,z,tx,ty,tz,angle   position, target, full cone angle in degrees
+  --light point:x,y,z                 position
+
+Examples:
+  warpshadow-lab
+  warpshadow-lab --scene leaves,colonnade --map 256,512,1024 --out report
+  warpshadow-lab --scene house.glb --camera=-2.6,1.5,1.6,2.5,0.3,-1.5,65 --light sun:0.3,-1,0.2
+  warpshadow-lab --scene outdoor --camera 0 --camera 2 --methods sm,notw --view 1920x1080
+)";
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    while (true) {
+        const std::size_t end = text.find(separator, begin);
+        parts.push_back(text.substr(begin, end - begin));
+        if (end == std::string::npos) {
+            return parts;
+        }
+        begin = end + 1;
+    }
+}
+
+template <typename T> std::optional<T> number(std::string_view text) {
+    if (text.starts_with('+')) {
+        text.remove_prefix(1);
+    }
+    T value{};
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    if (text.empty() || error != std::errc() || rest != end) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+/// Exactly `count` finite numbers between commas.
+std::optional<std::vector<double>> numbers(const std::string& text, std::size_t count) {
+    std::vector<double> values;
+    for (const std::string& part : split(text, ',')) {
+        const std::optional<double> value = number<double>(part);
+        // the scene's positions are float: what float cannot hold is no place in it
+        if (!value || !(std::abs(*value) <= 1e30)) {
+            return std::nullopt;
+        }
+        values.push_back(*value);
+    }
+    return values.size() == count ? std::optional(values) : std::nullopt;
+}
+
+glm::dvec3 vec3_at(const std::vector<double>& values, std::size_t first) {
+    return {values[first], values[first + 1], values[first + 2]};
+}
+
+int positive(const std::string& text, const char* option) {
+    const std::optional<int> value = number<int>(text);
+    if (!value || *value < 1) {
+        throw bad_input(std::string(option) + " wants whole numbers from 1 on, not '" + text + "'");
+    }
+    return *value;
+}
+
+/// Index into the built-in views for a text of digits alone; nothing for any other text.
+std::optional<std::size_t> built_in_index(const std::string& text) {
+    const bool digits = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+        return std::isdigit(c) != 0;
+    });
+    return digits ? std::optional(number<std::size_t>(text).value_or(SIZE_MAX)) : std::nullopt;
+}
+
+std::string out_of_range(const char* what, const std::string& text, const scene& world,
+                         std::size_t count) {
+    return "scene '" + world.name + "' has " + what + "s 0 to " + std::to_string(count - 1) +
+           ", there is no " + what + " " + text;
+}
+
+std::string joined(std::initializer_list<double> values) {
+    std::string text;
+    for (const double value : values) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%.4g", value);
+        text += (text.empty() ? "" : ",") + std::string(buffer);
+    }
+    return text;
+}
+
+void check_methods(std::vector<std::string>& wanted, std::span<const std::string_view> known) {
+    std::vector<std::string> result;
+    const auto add = [&](std::string_view name) {
+        if (std::find(result.begin(), result.end(), name) == result.end()) {
+            result.emplace_back(name);
+        }
+    };
+    for (const std::string& name : wanted) {
+        if (name == "all") {
+            std::for_each(known.begin(), known.end(), add);
+            continue;
+        }
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            std::string names;
+            for (const std::string_view each : known) {
+                names += (names.empty() ? "" : ", ") + std::string(each);
+            }
+            throw bad_input("unknown method '" + name + "'; there are " + names + ", and all");
+        }
+        add(name);
+    }
+    wanted = result;
+}
+
+} // namespace
+
+std::optional<options> parse_options(int argc, const char* const* argv,
+                                     std::span<const std::string_view> methods) {
+    options result;
+    CLI::App app("Renders scenes with shadow-mapping methods, counts the pixels that each gets "
+                 "wrong against ray tracing, and writes a report.",
+                 "warpshadow-lab");
+    app.footer(examples);
+    std::vector<std::string> scenes;
+    std::vector<std::string> cameras;
+    std::vector<std::string> lights;
+    std::vector<std::string> wanted;
+    std::vector<std::string> maps;
+    std::string view;
+    std::string repeat;
+    std::string seed;
+    const auto list = [&](const char* name, std::vector<std::string>& to, const char* about) {
+        app.add_option(name, to, about)->allow_extra_args(false);
+    };
+    list("--scene", scenes,
+         "Built-in scene or .obj, .gltf, .glb file; comma-separated or repeated "
+         "(outdoor,interior)");
+    app.add_flag("--list-scenes", result.list_scenes, "Print the built-in scenes and their views");
+    list("--camera", cameras, "Camera, may be repeated (0)");
+    list("--light", lights, "Light, may be repeated (0)");
+    list("--methods", wanted, "Comma-separated methods, or all (all)");
+    list("--map", maps, "Comma-separated sizes of the shadow map in texels (512)");
+    app.add_option("--view", view, "Size of the picture, WxH (1024x768)");
+    app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
+    app.add_option("--seed", seed, "Seed of the built-in scenes (1)");
+    app.add_option("--out", result.out, "Folder of the report (warpshadow-report)");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::fputs(app.help().c_str(), stdout);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        std::string text = error.what();
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        throw bad_input(text + " (see --help)");
+    }
+
+    const auto replace_if_given = [](std::vector<std::string>& target,
+                                     const std::vector<std::string>& given) {
+        if (given.empty()) {
+            return;
+        }
+        target.clear();
+        for (const std::string& each : given) {
+            for (const std::string& part : split(each, ',')) {
+                target.push_back(part);
+            }
+        }
+    };
+    if (!scenes.empty()) {
+        result.scenes.clear();
+        for (const std::string& each : scenes) {
+            std::error_code error;
+            if (std::filesystem::exists(each, error)) { // a file may have commas in its name
+                result.scenes.push_back(each);
+            } else {
+                for (const std::string& part : split(each, ',')) {
+                    result.scenes.push_back(part);
+                }
+            }
+        }
+    }
+    if (!cameras.empty()) {
+        result.cameras = cameras;
+    }
+    if (!lights.empty()) {
+        result.lights = lights;
+    }
+    replace_if_given(result.methods, wanted);
+    check_methods(result.methods, methods);
+    if (!maps.empty()) {
+        std::vector<std::string> texts;
+        replace_if_given(texts, maps);
+        result.maps.clear();
+        for (const std::string& text : texts) {
+            result.maps.push_back(positive(text, "--map"));
+        }
+    }
+    if (!view.empty()) {
+        const std::vector<std::string> sides = split(view, 'x');
+        const std::optional<int> width = number<int>(sides.front());
+        const std::optional<int> height = number<int>(sides.back());
+        if (sides.size() != 2 || !width || !height || *width < 1 || *height < 1) {
+            throw bad_input("--view wants WIDTHxHEIGHT in pixels, both from 1 on, not '" + view +
+                            "'");
+        }
+        result.view = {*width, *height};
+    }
+    if (!repeat.empty()) {
+        result.repeat = positive(repeat, "--repeat");
+    }
+    if (!seed.empty()) {
+        const std::optional<unsigned> value = number<unsigned>(seed);
+        if (!value) {
+            throw bad_input("--seed wants a whole number from 0 on, not '" + seed + "'");
+        }
+        result.seed = *value;
+    }
+    if (result.out.empty()) {
+        throw bad_input("--out wants a folder");
+    }
+    return result;
+}
+
+camera_view resolve_camera(const std::string& text, const scene& world) {
+    if (const std::optional<std::size_t> index = built_in_index(text)) {
+        if (*index >= world.cameras.size()) {
+            throw bad_input(out_of_range("camera", text, world, world.cameras.size()));
+        }
+        return world.cameras[*index];
+    }
+    const std::optional<std::vector<double>> values = numbers(text, 7);
+    if (!values) {
+        throw bad_input("--camera wants a number or ex,ey,ez,tx,ty,tz,fov, not '" + text + "'");
+    }
+    camera_view camera{text, vec3_at(*values, 0), vec3_at(*values, 3), glm::radians((*values)[6])};
+    if (camera.eye == camera.target) {
+        throw bad_input("--camera " + text + ": eye and target are the same point");
+    }
+    if (!((*values)[6] > 0.0 && (*values)[6] < 180.0)) {
+        throw bad_input("--camera " + text +
+                        ": the field of view is not between 0 and 180 degrees");
+    }
+    return camera;
+}
+
+light_view resolve_light(const std::string& text, const scene& world) {
+    if (const std::optional<std::size_t> index = built_in_index(text)) {
+        if (*index >= world.lights.size()) {
+            throw bad_input(out_of_range("light", text, world, world.lights.size()));
+        }
+        return world.lights[*index];
+    }
+    const std::size_t colon = text.find(':');
+    const std::string kind = text.substr(0, colon);
+    const std::string rest = colon == std::string::npos ? std::string() : text.substr(colon + 1);
+    if (kind == "sun") {
+        if (const auto values = numbers(rest, 3)) {
+            const glm::dvec3 direction = vec3_at(*values, 0);
+            if (direction == glm::dvec3(0.0)) {
+                throw bad_input("--light " + text + ": the direction has no length");
+            }
+            return {text, warpshadow::sun(direction)};
+        }
+    } else if (kind == "spot") {
+        if (const auto values = numbers(rest, 7)) {
+            const glm::dvec3 position = vec3_at(*values, 0);
+            const glm::dvec3 target = vec3_at(*values, 3);
+            if (position == target) {
+                throw bad_input("--light " + text + ": position and target are the same point");
+            }
+            if (!((*values)[6] > 0.0 && (*values)[6] < 180.0)) {
+                throw bad_input("--light " + text +
+                                ": the cone angle is not between 0 and 180 degrees");
+            }
+            return {text, warpshadow::spot_light(position, target, glm::radians((*values)[6]))};
+        }
+    } else if (kind == "point") {
+        if (const auto values = numbers(rest, 3)) {
+            return {text, warpshadow::point_light(vec3_at(*values, 0))};
+        }
+    }
+    throw bad_input("--light wants a number, sun:dx,dy,dz, spot:x,y,z,tx,ty,tz,angle or "
+                    "point:x,y,z, not '" +
+                    text + "'");
+}
+
+std::string camera_text(const camera_view& camera) {
+    return joined({camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x, camera.target.y,
+                   camera.target.z, glm::degrees(camera.fov_y)});
+}
+
+std::string light_text(const light_view& view) {
+    const warpshadow::light<double>& light = view.light;
+    if (light.kind == warpshadow::light_kind::directional) {
+        return "sun:" + joined({light.direction.x, light.direction.y, light.direction.z});
+    }
+    if (light.kind == warpshadow::light_kind::point) {
+        return "point:" + joined({light.position.x, light.position.y, light.position.z});
+    }
+    const glm::dvec3 target = light.position + light.direction;
+    return "spot:" + joined({light.position.x, light.position.y, light.position.z, target.x,
+                             target.y, target.z, glm::degrees(light.cone_angle)});
+}
+
+} // namespace lab

@@ -1,0 +1,45 @@
+// Command line of warpshadow-lab.
+#pragma once
+
+#include "lab/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lab {
+
+/// What the user asked for; cameras and lights are resolved per scene.
+struct options {
+    std::vector<std::string> scenes{"outdoor", "interior"};
+    std::vector<std::string> cameras{"0"};
+    std::vector<std::string> lights{"0"};
+    std::vector<std::string> methods{"all"};
+    std::vector<int> maps{512};
+    glm::ivec2 view{1024, 768};
+    int repeat = 5;
+    unsigned seed = 1;
+    std::string out = "warpshadow-report";
+    bool list_scenes = false;
+};
+
+/// Reads the command line; nothing when help was asked for and printed.
+/// @throws bad_input with one line for anything that cannot be understood.
+std::optional<options> parse_options(int argc, const char* const* argv,
+                                     std::span<const std::string_view> methods);
+
+/// The camera that `text` names in `world`: a number, or ex,ey,ez,tx,ty,tz,fov.
+camera_view resolve_camera(const std::string& text, const scene& world);
+
+/// The light that `text` names in `world`: a number, or sun:…, spot:…, point:….
+light_view resolve_light(const std::string& text, const scene& world);
+
+/// The lab's syntax for a camera and a light, as --list-scenes shows them.
+std::string camera_text(const camera_view& camera);
+std::string light_text(const light_view& light);
+
+} // namespace lab

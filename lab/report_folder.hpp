@@ -1,0 +1,39 @@
+// A folder that appears whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lab {
+
+/// Files are written to a temporary folder beside the wanted one, which `publish` puts in place.
+class report_folder {
+  public:
+    /// Makes the temporary folder and checks that it can be written to.
+    ///
+    /// A folder that exists already is replaced on publication if it is empty or holds an earlier
+    /// report and nothing else.
+    /// @throws bad_input with one line when the folder cannot be made or must not be replaced.
+    explicit report_folder(const std::filesystem::path& wanted);
+    /// Removes the temporary folder, and the parents made for it, unless it was published.
+    ~report_folder();
+    report_folder(const report_folder&) = delete;
+    report_folder& operator=(const report_folder&) = delete;
+
+    void write(std::string_view name, std::span<const std::uint8_t> bytes);
+    void write(std::string_view name, const std::string& text);
+
+    /// Puts the folder in its place in one step and returns where it is.
+    std::filesystem::path publish();
+
+  private:
+    std::filesystem::path wanted_;
+    std::filesystem::path temporary_;
+    std::filesystem::path made_parent_; ///< outermost parent made for the folder
+    bool published_ = false;
+};
+
+} // namespace lab

@@ -1,0 +1,149 @@
+#include "lab/results.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lab {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number_or_null(std::optional<double> value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
+    const comparison& c = run.against_truth;
+    const method_result& r = run.result;
+    ordered_json json;
+    json["scene"] = run.scene;
+    json["camera"] = run.camera;
+    json["light"] = run.light;
+    json["method"] = run.method;
+    json["map"] = run.map;
+    json["view"] = {view.x, view.y};
+    json["samples"] = c.samples;
+    json["wrong_pixel_ratio"] = number_or_null(c.ratio(c.false_shadow + c.false_light));
+    json["false_shadow_ratio"] = number_or_null(c.ratio(c.false_shadow));
+    json["false_light_ratio"] = number_or_null(c.ratio(c.false_light));
+    ordered_json grazing;
+    grazing["samples"] = c.grazing_samples;
+    grazing["wrong_pixel_ratio"] = c.grazing_samples == 0
+                                       ? ordered_json(nullptr)
+                                       : ordered_json(static_cast<double>(c.grazing_wrong) /
+                                                      static_cast<double>(c.grazing_samples));
+    json["grazing"] = grazing;
+    ordered_json frame;
+    frame["median"] = r.frame_ms_median;
+    frame["min"] = r.frame_ms_min;
+    frame["max"] = r.frame_ms_max;
+    frame["n"] = r.frames;
+    json["frame_ms"] = frame;
+    json["pass_ms"] = ordered_json::object();
+    for (const pass_time& pass : r.passes) {
+        json["pass_ms"][pass.pass] = pass.ms;
+    }
+    json["cpu_setup_us"] = ordered_json::object();
+    for (const auto& [name, us] : r.cpu_setup_us) {
+        json["cpu_setup_us"][name] = us;
+    }
+    json["bytes"] = r.bytes;
+    json["triangles"] = r.triangles;
+    json["status"] = r.status;
+    return json;
+}
+
+} // namespace
+
+std::string json_of(const results& all) {
+    ordered_json json;
+    json["schema"] = 1;
+    json["device"]["renderer"] = all.renderer;
+    json["device"]["version"] = all.version;
+    json["timing"] = all.timing;
+    json["runs"] = ordered_json::array();
+    for (const run_record& run : all.runs) {
+        json["runs"].push_back(json_of_run(run, all.view));
+    }
+    json["not_applicable"] = ordered_json::array();
+    for (const not_applicable& each : all.left_out) {
+        ordered_json entry;
+        entry["scene"] = each.scene;
+        entry["light"] = each.light;
+        entry["method"] = each.method;
+        entry["reason"] = each.reason;
+        json["not_applicable"].push_back(entry);
+    }
+    // names may hold bytes of any file system: what is not UTF-8 is replaced
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string percent_text(std::optional<double> ratio) {
+    if (!ratio) {
+        return "-";
+    }
+    char buffer[32];
+    const double percent = 100.0 * *ratio;
+    std::snprintf(buffer, sizeof buffer, percent >= 10.0 ? "%.1f" : "%.2f", percent);
+    return buffer;
+}
+
+std::string ms_text(double ms) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, ms >= 100.0 ? "%.0f" : ms >= 10.0 ? "%.1f" : "%.2f", ms);
+    return buffer;
+}
+
+std::string bytes_text(std::size_t bytes) {
+    const char* const units[] = {"B", "KiB", "MiB", "GiB"};
+    auto value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    while (value >= 1024.0 && unit < 3) {
+        value /= 1024.0;
+        ++unit;
+    }
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, unit == 0 || value >= 100.0 ? "%.0f %s" : "%.1f %s", value,
+                  units[unit]);
+    return buffer;
+}
+
+std::string table_of(const results& all) {
+    std::vector<std::vector<std::string>> rows{{"scene", "camera", "light", "method", "map",
+                                                "wrong %", "false shadow %", "false light %",
+                                                "frame ms", "bytes"}};
+    for (const run_record& run : all.runs) {
+        const comparison& c = run.against_truth;
+        rows.push_back({run.scene, run.camera, run.light, run.method,
+                        run.map == 0 ? "-" : std::to_string(run.map),
+                        percent_text(c.ratio(c.false_shadow + c.false_light)),
+                        percent_text(c.ratio(c.false_shadow)), percent_text(c.ratio(c.false_light)),
+                        ms_text(run.result.frame_ms_median), bytes_text(run.result.bytes)});
+    }
+    std::string text;
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            widths[i] = std::max(widths[i], row[i].size());
+        }
+    }
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string space(widths[i] - row[i].size(), ' ');
+            const bool is_text = i < 4;
+            text += is_text ? row[i] + space : space + row[i];
+            text += i + 1 < row.size() ? "  " : "";
+        }
+        text += '\n';
+    }
+    for (const not_applicable& each : all.left_out) {
+        text += "not applicable: " + each.method + " on " + each.scene + ", light " + each.light +
+                ": " + each.reason + "\n";
+    }
+    return text;
+}
+
+} // namespace lab

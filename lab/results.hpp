@@ -1,0 +1,58 @@
+// What was measured, as results.json and as the table on the terminal.
+#pragma once
+
+#include "lab/measure.hpp"
+#include "lab/methods.hpp"
+
+#include <glm/glm.hpp>
+
+#include <string>
+#include <vector>
+
+namespace lab {
+
+/// One method on one view at one map size.
+struct run_record {
+    std::string scene;
+    std::string camera;
+    std::string light;
+    std::string method;
+    int map = 0; ///< texels along a side; 0 for a method without a map
+    comparison against_truth;
+    method_result result;
+};
+
+/// A method that was asked for and cannot do the light.
+struct not_applicable {
+    std::string scene;
+    std::string light;
+    std::string method;
+    std::string reason;
+};
+
+/// Everything that a report is made of.
+struct results {
+    std::string renderer;
+    std::string version;
+    std::string timing; ///< "timer_query" or "glfinish"
+    glm::ivec2 view{0};
+    std::vector<run_record> runs;
+    std::vector<not_applicable> left_out;
+};
+
+/// The text of results.json, schema 1.
+std::string json_of(const results& all);
+
+/// A table for a terminal, one line per run.
+std::string table_of(const results& all);
+
+/// A share as per cent, "-" when there is none.
+std::string percent_text(std::optional<double> ratio);
+
+/// "4.0 MiB" and the like.
+std::string bytes_text(std::size_t bytes);
+
+/// Milliseconds with three digits.
+std::string ms_text(double ms);
+
+} // namespace lab

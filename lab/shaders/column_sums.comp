@@ -1,0 +1,2 @@
+#version 430 core
+#include "passes/column_sums.glsl"

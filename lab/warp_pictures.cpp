@@ -1,0 +1,123 @@
+#include "lab/warp_pictures.hpp"
+
+#include <warpshadow/warp.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace lab {
+
+namespace ws = warpshadow;
+
+namespace {
+
+constexpr int grid_lines = 24;
+
+struct canvas {
+    canvas(std::string name, int size)
+        : picture{std::move(name), size, size,
+                  std::vector<std::uint8_t>(3 * static_cast<std::size_t>(size) *
+                                            static_cast<std::size_t>(size))} {}
+
+    /// Row 0 of `y` is the bottom; pictures start at the top.
+    void set(int x, int y, glm::vec3 colour) {
+        const std::size_t first = 3 * (static_cast<std::size_t>(picture.height - 1 - y) *
+                                           static_cast<std::size_t>(picture.width) +
+                                       static_cast<std::size_t>(x));
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float value = std::clamp(colour[static_cast<glm::length_t>(i)], 0.0f, 1.0f);
+            picture.rgb[first + i] = static_cast<std::uint8_t>(value * 255.0f + 0.5f);
+        }
+    }
+
+    named_picture picture;
+};
+
+/// Black over blue and orange to white: dark where no view sample falls.
+glm::vec3 heat(float t) {
+    return glm::clamp(
+        glm::vec3(2.2f * t - 0.25f, 1.8f * t - 0.55f, 1.2f * std::sqrt(t) * (1.0f - t) + t * t),
+        0.0f, 1.0f);
+}
+
+std::vector<float> shades(const std::vector<std::uint32_t>& counts) {
+    std::uint32_t most = 1;
+    for (const std::uint32_t count : counts) {
+        most = std::max(most, count);
+    }
+    const float scale = 1.0f / std::log1p(static_cast<float>(most));
+    std::vector<float> result;
+    result.reserve(counts.size());
+    for (const std::uint32_t count : counts) {
+        result.push_back(std::log1p(static_cast<float>(count)) * scale);
+    }
+    return result;
+}
+
+} // namespace
+
+std::vector<named_picture> warp_pictures(const warp_readback& warp) {
+    const int size = warp.size;
+    const auto at = [size](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+               static_cast<std::size_t>(x);
+    };
+    const ws::table_view<float> rows{warp.rows, size, size};
+    const ws::table_view<float> columns{warp.columns, size, size};
+    const std::vector<float> importance = shades(warp.importance);
+    const std::vector<float> half_warped = shades(warp.half_warped);
+
+    canvas before("importance", size);
+    canvas between("importance-rows-warped", size);
+    canvas grid("warp-grid", size);
+    std::vector<glm::ivec2> cell(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            before.set(x, y, heat(importance[at(x, y)]));
+            between.set(x, y, heat(half_warped[at(y, x)]));
+            const glm::vec2 q = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
+                                static_cast<float>(size);
+            const glm::vec2 p = glm::clamp(ws::unwarp(rows, columns, q), 0.0f, 1.0f);
+            cell[at(x, y)] = glm::ivec2(p * static_cast<float>(grid_lines));
+            const glm::ivec2 texel = glm::min(glm::ivec2(p * static_cast<float>(size)), size - 1);
+            grid.set(x, y, heat(importance[at(texel.x, texel.y)]));
+        }
+    }
+    for (int y = 0; y + 1 < size; ++y) {
+        for (int x = 0; x + 1 < size; ++x) {
+            if (cell[at(x, y)] != cell[at(x + 1, y)] || cell[at(x, y)] != cell[at(x, y + 1)]) {
+                grid.set(x, y, glm::vec3(0.25f, 0.85f, 0.55f));
+            }
+        }
+    }
+    std::vector<named_picture> result;
+    result.push_back(std::move(before.picture));
+    result.push_back(std::move(between.picture));
+    result.push_back(std::move(grid.picture));
+    return result;
+}
+
+named_picture depth_picture(const std::vector<float>& depth, int size) {
+    float lo = std::numeric_limits<float>::infinity();
+    float hi = 0.0f;
+    for (const float d : depth) {
+        if (d < 1.0f) {
+            lo = std::min(lo, d);
+            hi = std::max(hi, d);
+        }
+    }
+    const float scale = hi > lo ? 0.9f / (hi - lo) : 0.0f;
+    canvas result("shadow-map", size);
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const float d = depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+                                  static_cast<std::size_t>(x)];
+            result.set(x, y, glm::vec3(d < 1.0f ? 0.05f + (d - lo) * scale : 1.0f));
+        }
+    }
+    return std::move(result.picture);
+}
+
+} // namespace lab

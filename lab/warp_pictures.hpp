@@ -1,0 +1,26 @@
+// Pictures that explain a warp: importance before and after, and the grid that the tables draw.
+#pragma once
+
+#include "lab/methods.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace lab {
+
+/// Tables and counts of one warp, as read from the device; row 0 at the bottom.
+struct warp_readback {
+    int size;                               ///< cells along either axis
+    std::vector<float> rows;                ///< size · (size + 1) nodes
+    std::vector<float> columns;             ///< size · (size + 1) nodes
+    std::vector<std::uint32_t> importance;  ///< counts in the unwarped map
+    std::vector<std::uint32_t> half_warped; ///< counts after the rows, transposed
+};
+
+/// "importance", "importance-rows-warped" (Milet et al. 2015, figure 4) and "warp-grid" (figure 5).
+std::vector<named_picture> warp_pictures(const warp_readback& warp);
+
+/// "shadow-map": depth, contrast stretched to what is there, near is dark.
+named_picture depth_picture(const std::vector<float>& depth, int size);
+
+} // namespace lab

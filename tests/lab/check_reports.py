@@ -1,0 +1,204 @@
+"""Runs warpshadow-lab on small views and checks what it writes.
+
+usage: check_reports.py LAB DATA SCRATCH
+"""
+
+import base64
+import json
+import re
+import shutil
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
+METHODS = ["sm", "dv", "notw", "notw-nodv"]
+SMALL = ["--view", "96x64", "--repeat", "2"]
+RUN_KEYS = {
+    "scene", "camera", "light", "method", "map", "view", "samples", "wrong_pixel_ratio",
+    "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
+    "bytes", "triangles", "status",
+}
+
+
+def run(*arguments):
+    return subprocess.run([lab, *arguments], cwd=scratch, capture_output=True, text=True)
+
+
+def report(folder, *arguments):
+    """Runs the lab, which must succeed; returns results.json after the checks that always hold."""
+    done = run(*SMALL, "--out", folder, *arguments)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == "", f"no terminal, no progress bar: {done.stderr!r}"
+    last_line = done.stdout.splitlines()[-1]
+    assert last_line == str(scratch / folder / "report.html"), last_line
+    check_files(scratch / folder)
+    results = json.loads((scratch / folder / "results.json").read_text())
+    check_results(results)
+    for entry in results["runs"]:
+        assert re.search(rf"^{entry['scene']} .* {entry['method']} ", done.stdout, re.M), done.stdout
+    assert not list(scratch.glob(".*")), "a temporary folder is left"
+    return results
+
+
+def check_files(folder):
+    pictures = sorted(folder.glob("*.png"))
+    assert pictures
+    assert {p.name for p in folder.iterdir()} == (
+        {p.name for p in pictures} | {"results.json", "report.html"})
+    for picture in pictures:
+        width, height = png_size(picture.read_bytes())
+        assert width > 0 and height > 0
+        if picture.name.endswith("-wrong.png") and "-detail" not in picture.name:
+            assert (width, height) == (96, 64), picture
+    html = (folder / "report.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]*)"', html)
+    assert sources and all(s.startswith("data:image/png;base64,") for s in sources)
+    for source in sources:
+        png_size(base64.b64decode(source.split(",", 1)[1], validate=True))
+    assert "http:" not in html and "https:" not in html, "the page must need nothing but itself"
+    assert html.count("<svg") == html.count("<section>") == html.count("</section>")
+    assert 'name="viewport"' in html and "prefers-color-scheme: dark" in html
+
+
+def png_size(content):
+    assert content[:8] == b"\x89PNG\r\n\x1a\n" and content[12:16] == b"IHDR"
+    assert content[-8:-4] == b"IEND"
+    return struct.unpack(">II", content[16:24])
+
+
+def check_results(results):
+    assert list(results) == ["schema", "device", "timing", "runs", "not_applicable"]
+    assert results["schema"] == 1
+    assert results["device"]["renderer"] and results["device"]["version"]
+    assert results["timing"] in ("timer_query", "glfinish")
+    software = any(s in results["device"]["renderer"].lower() for s in ("llvmpipe", "softpipe"))
+    assert results["timing"] == ("glfinish" if software else "timer_query")
+    assert results["runs"]
+    for entry in results["runs"]:
+        assert set(entry) == RUN_KEYS, set(entry) ^ RUN_KEYS
+        assert entry["view"] == [96, 64]
+        assert 0 <= entry["samples"] <= 96 * 64
+        wrong, shadow, light = (
+            entry[k] for k in ("wrong_pixel_ratio", "false_shadow_ratio", "false_light_ratio"))
+        if entry["samples"] == 0:
+            assert wrong is None and shadow is None and light is None
+        else:
+            counts = [r * entry["samples"] for r in (wrong, shadow, light)]
+            assert all(abs(c - round(c)) < 1e-6 for c in counts), "ratios are of whole samples"
+            assert round(counts[0]) == round(counts[1]) + round(counts[2])
+        grazing = entry["grazing"]
+        assert (grazing["wrong_pixel_ratio"] is None) == (grazing["samples"] == 0)
+        times = entry["frame_ms"]
+        assert 0 < times["min"] <= times["median"] <= times["max"] and times["n"] == 2
+        assert entry["pass_ms"] and all(t >= 0 for t in entry["pass_ms"].values())
+        assert entry["bytes"] > 0 and entry["triangles"] > 0
+        if entry["method"] == "raytraced":
+            assert entry["map"] == 0 and not wrong and not entry["grazing"]["wrong_pixel_ratio"]
+        else:
+            assert entry["bytes"] >= 4 * entry["map"] ** 2, "at least the depth of the map"
+
+
+def methods_of(results):
+    return [(r["method"], r["map"]) for r in results["runs"]]
+
+
+def facts(results):
+    """What must not change from run to run: everything but times."""
+    return [{k: v for k, v in r.items() if k not in ("frame_ms", "pass_ms", "cpu_setup_us")}
+            for r in results["runs"]]
+
+
+def check_every_method():
+    first = report("every", "--scene", "leaves", "--methods", "all", "--map", "64,128")
+    assert methods_of(first) == (
+        [(m, 64) for m in METHODS] + [("raytraced", 0)] + [(m, 128) for m in METHODS])
+    assert first["not_applicable"] == []
+    by_name = {(r["method"], r["map"]): r["wrong_pixel_ratio"] for r in first["runs"]}
+    assert by_name["sm", 128] < by_name["sm", 64], "a larger map is wrong less often"
+    assert by_name["dv", 64] < 0.5, "better than a coin"
+
+    kept = {p.name: p.read_bytes() for p in (scratch / "every").glob("*.png")}
+    again = report("every", "--scene=leaves", "--methods=all", "--map=64,128")
+    assert facts(first) == facts(again)
+    assert kept == {p.name: p.read_bytes() for p in (scratch / "every").glob("*.png")}
+
+
+def check_spot_and_point():
+    camera = "-1,1.5,1,0.5,0.6,-0.5,60"
+    spot = report("spot", "--scene", "interior", "--camera", camera, "--light",
+                  "spot:0.2,1.97,-0.1,0.2,0,-0.1,120", "--map", "64")
+    assert all(r["camera"] == camera for r in spot["runs"])
+    assert {r["samples"] for r in spot["runs"]} == {spot["runs"][0]["samples"]}
+    assert spot["runs"][0]["samples"] > 0
+
+    point = report("point", "--scene", "interior", "--camera", camera, "--light",
+                   "point:0.2,1.97,-0.1", "--map", "64")
+    assert methods_of(point) == [("raytraced", 0)]
+    assert [(e["method"], e["light"]) for e in point["not_applicable"]] == (
+        [(m, "point:0.2,1.97,-0.1") for m in METHODS])
+    assert all(e["reason"] and e["scene"] == "interior" for e in point["not_applicable"])
+
+
+def check_files_as_scenes():
+    # seen from where the light is, the raised square hides its own shadow
+    both = report("gltf", "--scene", str(data / "two_quads.gltf"), "--camera",
+                  "0.01,20,0,0,0,0,40", "--light", "sun:0,-1,0", "--methods", "sm,raytraced",
+                  "--map", "256")
+    assert {r["scene"] for r in both["runs"]} == {"two_quads"}
+    assert {r["triangles"] for r in both["runs"]} == {4}
+    assert both["runs"][0]["wrong_pixel_ratio"] < 0.01
+    obj = report("obj", "--scene", str(data / "quad_and_line.obj"), "--methods", "sm", "--map", "64")
+    assert obj["runs"][0]["triangles"] == 2
+    assert obj["runs"][0]["samples"] > 0, "the camera derived from the box sees the mesh"
+    assert obj["runs"][0]["wrong_pixel_ratio"] == 0, "a flat square casts no shadow on itself"
+
+
+def check_views():
+    several = report("views", "--scene", "leaves", "--camera", "0", "--camera", "1", "--light", "0",
+                     "--light", "1", "--methods", "sm", "--map", "64")
+    assert [(r["camera"], r["light"]) for r in several["runs"]] == [
+        ("0", "0"), ("0", "1"), ("1", "0"), ("1", "1")]
+
+
+def check_folders():
+    mine = scratch / "mine"
+    mine.mkdir()
+    (mine / "notes.txt").write_text("keep")
+    refused = run(*SMALL, "--scene", "leaves", "--methods", "sm", "--map", "64", "--out", "mine")
+    assert refused.returncode != 0 and "other than a report" in refused.stderr
+    assert [p.name for p in mine.iterdir()] == ["notes.txt"]
+    (scratch / "hollow").mkdir()
+    report("hollow", "--scene", "leaves", "--methods", "sm", "--map", "64")
+    report("made/on/the/way", "--scene", "leaves", "--methods", "sm", "--map", "64")
+    # an earlier report is still there when a run fails
+    before = (scratch / "hollow" / "results.json").read_bytes()
+    failed = run(*SMALL, "--scene", "leaves", "--map", "1000000", "--out", "hollow")
+    assert failed.returncode != 0
+    assert (scratch / "hollow" / "results.json").read_bytes() == before
+
+
+def check_help():
+    done = run("--help")
+    assert done.returncode == 0 and done.stderr == ""
+    for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
+                   "--view", "--repeat", "--seed", "--out", "Examples:"):
+        assert option in done.stdout, option
+    listed = run("--list-scenes")
+    assert listed.returncode == 0 and listed.stderr == ""
+    for name in ("outdoor", "colonnade", "interior", "leaves"):
+        assert re.search(rf"^{name}: ", listed.stdout, re.M), name
+    assert not list(scratch.iterdir()), "neither help nor list writes anything"
+
+
+shutil.rmtree(scratch, ignore_errors=True)
+scratch.mkdir(parents=True)
+scratch = scratch.resolve()
+check_help()
+check_folders()
+check_every_method()
+check_spot_and_point()
+check_files_as_scenes()
+check_views()
+shutil.rmtree(scratch)
