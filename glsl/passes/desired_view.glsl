@@ -44,11 +44,11 @@ void main()
         }
     }
     if (lo.x <= hi.x) {
-        // + 0.0 turns a negative zero, whose bits are large, into a positive one
-        atomicMin(ws_group_lo[0], floatBitsToUint(lo.x + 0.0));
-        atomicMin(ws_group_lo[1], floatBitsToUint(lo.y + 0.0));
-        atomicMax(ws_group_hi[0], floatBitsToUint(hi.x + 0.0));
-        atomicMax(ws_group_hi[1], floatBitsToUint(hi.y + 0.0));
+        // abs clears the sign of a negative zero, whose bits are large
+        atomicMin(ws_group_lo[0], floatBitsToUint(abs(lo.x)));
+        atomicMin(ws_group_lo[1], floatBitsToUint(abs(lo.y)));
+        atomicMax(ws_group_hi[0], floatBitsToUint(abs(hi.x)));
+        atomicMax(ws_group_hi[1], floatBitsToUint(abs(hi.y)));
     }
     barrier();
 

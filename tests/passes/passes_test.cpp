@@ -1,0 +1,271 @@
+// The compute passes on whatever OpenGL there is, against the same steps on the host.
+#include "gl/context.hpp"
+#include "gl/objects.hpp"
+
+#include <warpshadow/fit.hpp>
+#include <warpshadow/warp_build.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace ws = warpshadow;
+
+namespace {
+
+/// View samples in a buffer; those with z = 0 stand for background and unlit surfaces.
+constexpr const char* view_samples = R"(
+layout(std430, binding = 1) readonly buffer sample_buffer { vec4 sample_list[]; };
+uniform ivec2 view_size;
+ivec2 ws_view_size() { return view_size; }
+bool ws_view_sample(ivec2 pixel, out vec2 p)
+{
+    vec4 s = sample_list[pixel.y * view_size.x + pixel.x];
+    p = s.xy;
+    return s.z != 0.0;
+}
+)";
+
+gl::program pass(const std::string& text) {
+    static const gl::shader_library library{gl::glsl_files()};
+    return gl::program::compute(library.compose("#version 430 core\n" + text, "pass"));
+}
+
+struct view {
+    glm::ivec2 size;
+    std::vector<glm::vec4> all;
+    std::vector<glm::vec2> lit; ///< what the passes should count
+};
+
+/// Clustered samples, some on the border, some outside, some not lit.
+view make_view(glm::ivec2 size, unsigned seed) {
+    view result{size, {}, {}};
+    std::mt19937 random(seed);
+    std::normal_distribution<float> near_centre(0.3f, 0.07f);
+    std::uniform_real_distribution<float> anywhere(-0.02f, 1.02f);
+    for (int i = 0; i < size.x * size.y; ++i) {
+        glm::vec2 p(near_centre(random), near_centre(random));
+        if (i % 5 == 0) {
+            p = glm::vec2(anywhere(random), anywhere(random));
+        } else if (i % 997 == 1) {
+            p = glm::vec2(i % 2 == 0 ? 0.0f : 1.0f, 1.0f);
+        }
+        const bool lit = i % 11 != 3;
+        result.all.emplace_back(p, lit ? 1.0f : 0.0f, 0.0f);
+        if (lit) {
+            result.lit.push_back(p);
+        }
+    }
+    return result;
+}
+
+/// Distance in units of the last place of 1, the scale of a table.
+float ulps_of_one(float a, float b) {
+    return std::abs(a - b) / std::numeric_limits<float>::epsilon();
+}
+
+struct device_axis {
+    std::vector<std::uint32_t> counts;
+    std::vector<float> table;
+};
+
+/// Splats and builds one axis; `rows` is the table of the first axis or null.
+device_axis build_on_device(const view& samples, int size, int radius, float floor,
+                            const gl::texture* rows, gl::texture& table) {
+    const std::string splat_text =
+        std::string(rows != nullptr ? "#define WS_SPLAT_COLUMNS\n" : "") + view_samples +
+        "#include \"warpshadow/importance.glsl\"\n#include \"warpshadow/warp.glsl\"\n"
+        "#include \"passes/splat.glsl\"\n";
+    const gl::program splat = pass(splat_text);
+    const gl::program sums = pass("#include \"passes/column_sums.glsl\"\n");
+    const gl::program build =
+        pass("#include \"warpshadow/warp_build.glsl\"\n#include \"passes/build_axis.glsl\"\n");
+
+    const gl::buffer list(std::span<const glm::vec4>(samples.all));
+    gl::texture counts(GL_R32UI, size, size);
+    counts.clear(glm::uvec4(0u));
+    list.bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+    counts.bind_image(0, GL_READ_WRITE);
+    if (rows != nullptr) {
+        rows->bind(0);
+    }
+    splat.set("view_size", samples.size);
+    splat.dispatch(samples.size.x, samples.size.y);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    device_axis result;
+    result.counts = counts.read<std::uint32_t>();
+
+    sums.dispatch(size);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    table.bind_image(1, GL_WRITE_ONLY);
+    build.set("ws_radius", radius);
+    build.set("ws_floor", floor);
+    build.use();
+    glDispatchCompute(static_cast<GLuint>(size), 1, 1);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    result.table = table.read<float>();
+    return result;
+}
+
+std::vector<float> build_on_host(std::vector<std::uint32_t> counts, int size,
+                                 const ws::build_options<float>& options) {
+    std::vector<std::uint64_t> scratch(static_cast<std::size_t>(size));
+    std::vector<float> nodes(static_cast<std::size_t>(size) * (static_cast<std::size_t>(size) + 1));
+    const ws::table_span<float> out{nodes, size, size};
+    const ws::build_result<float> built =
+        ws::build_axis(ws::count_view(counts, size, size), options, std::span(scratch), out);
+    REQUIRE_FALSE(ws::any(built.flags, ws::status::buffer_too_small));
+    return nodes;
+}
+
+void compare_tables(const std::vector<float>& device, const std::vector<float>& host, int size) {
+    REQUIRE(device.size() == host.size());
+    const std::size_t stride = static_cast<std::size_t>(size) + 1;
+    float worst = 0.0f;
+    bool monotone = true;
+    bool ends_exact = true;
+    for (std::size_t row = 0; row < static_cast<std::size_t>(size); ++row) {
+        for (std::size_t k = 0; k < stride; ++k) {
+            worst = std::max(worst, ulps_of_one(device[row * stride + k], host[row * stride + k]));
+            monotone =
+                monotone && (k == 0 || device[row * stride + k] > device[row * stride + k - 1]);
+        }
+        ends_exact =
+            ends_exact && device[row * stride] == 0.0f && device[row * stride + stride - 1] == 1.0f;
+    }
+    // float on the device against double rounded once: the quotient k / w, the excess, its product
+    // with 1 - floor and the sum round once each, and a GPU's division may be off by 2.5 ulp twice
+    CHECK(worst <= 6.0f);
+    CHECK(monotone);
+    CHECK(ends_exact);
+}
+
+} // namespace
+
+TEST_CASE("passes: tables of the device are those of the host") {
+    const gl::headless_context context;
+    for (const int size : {1, 2, 3, 17, 64, 100, 128, 129, 512, 1000}) {
+        DYNAMIC_SECTION("map of " << size) {
+            const view samples = make_view({257, 193}, static_cast<unsigned>(size));
+            const ws::build_options<float> options;
+            const int radius = ws::window_radius(options.window, size);
+            const float floor = options.floor;
+
+            gl::texture rows(GL_R32F, size + 1, size);
+            const device_axis first = build_on_device(samples, size, radius, floor, nullptr, rows);
+            std::vector<std::uint32_t> counts(static_cast<std::size_t>(size) *
+                                              static_cast<std::size_t>(size));
+            ws::splat(std::span<const glm::vec2>(samples.lit), ws::count_map{counts, size, size});
+            CHECK(first.counts == counts);
+            compare_tables(first.table, build_on_host(first.counts, size, options), size);
+
+            gl::texture columns(GL_R32F, size + 1, size);
+            const device_axis second =
+                build_on_device(samples, size, radius, floor, &rows, columns);
+            std::fill(counts.begin(), counts.end(), 0u);
+            const ws::table_view<float> host_rows{first.table, size, size};
+            const ws::splat_result counted =
+                ws::splat_columns(std::span<const glm::vec2>(samples.lit), host_rows,
+                                  ws::count_map{counts, size, size});
+            std::uint64_t moved = 0;
+            std::uint64_t total = 0;
+            for (std::size_t i = 0; i < counts.size(); ++i) {
+                moved += counts[i] > second.counts[i] ? counts[i] - second.counts[i]
+                                                      : second.counts[i] - counts[i];
+                total += second.counts[i];
+            }
+            CHECK(total == counted.counted);
+            // a sample within rounding of a cell's edge, 4 ulp of 1 out of 1 / size, may change
+            // sides
+            const double expected = 2.0 * 4.0 * 1.2e-7 * size * static_cast<double>(total);
+            CHECK(static_cast<double>(moved) <= 16.0 + 4.0 * expected);
+            compare_tables(second.table, build_on_host(second.counts, size, options), size);
+
+            gl::texture centres(GL_RG32F, size, size);
+            rows.bind(0);
+            columns.bind(1);
+            centres.bind_image(0, GL_WRITE_ONLY);
+            const gl::program unwarp = pass(
+                "#include \"warpshadow/warp.glsl\"\n#include \"passes/unwarp_centres.glsl\"\n");
+            unwarp.dispatch(size, size);
+            glMemoryBarrier(GL_ALL_BARRIER_BITS);
+            const std::vector<glm::vec2> device_centres = centres.read<glm::vec2>();
+            const ws::table_view<float> host_columns{second.table, size, size};
+            // judged by what it achieves: warped again it is the centre, up to the roundings of p
+            // (an ulp of 1 from each of the four steps of either search) that the warp magnifies
+            // there
+            double worst = 0.0;
+            for (int y = 0; y < size; ++y) {
+                for (int x = 0; x < size; ++x) {
+                    const glm::vec2 q = (glm::vec2(x, y) + 0.5f) / static_cast<float>(size);
+                    const glm::vec2 p = device_centres[static_cast<std::size_t>(y) *
+                                                           static_cast<std::size_t>(size) +
+                                                       static_cast<std::size_t>(x)];
+                    const glm::vec2 back = ws::warp(host_rows, host_columns, p);
+                    const glm::mat2 j = ws::jacobian(host_rows, host_columns, p);
+                    const double growth =
+                        static_cast<double>(1.0f + std::abs(j[0][0]) + std::abs(j[0][1]) +
+                                            std::abs(j[1][0]) + std::abs(j[1][1]));
+                    worst = std::max(worst, static_cast<double>(glm::distance(back, q)) / growth);
+                }
+            }
+            CHECK(worst <= 8.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));
+        }
+    }
+}
+
+TEST_CASE("passes: an empty view gives the identity") {
+    const gl::headless_context context;
+    view nothing{{16, 16}, std::vector<glm::vec4>(256, glm::vec4(0.5f, 0.5f, 0.0f, 0.0f)), {}};
+    const int size = 96;
+    gl::texture rows(GL_R32F, size + 1, size);
+    const device_axis built = build_on_device(nothing, size, 5, 0.2f, nullptr, rows);
+    for (int row = 0; row < size; ++row) {
+        for (int k = 0; k <= size; ++k) {
+            const float node = built.table[static_cast<std::size_t>(row * (size + 1) + k)];
+            REQUIRE(ulps_of_one(node, static_cast<float>(k) / static_cast<float>(size)) <= 1.25f);
+        }
+    }
+}
+
+TEST_CASE("passes: desired view is that of the host") {
+    const gl::headless_context context;
+    const gl::program find =
+        pass(std::string(view_samples) + "#include \"passes/desired_view.glsl\"\n");
+    const std::uint32_t infinity =
+        std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(5, 3), glm::ivec2(640, 479)}) {
+        view samples = make_view(size, static_cast<unsigned>(size.x));
+        samples.all.front().x = -0.0f; // a negative zero is inside, and the least there is
+        samples.all.front().z = 1.0f;
+        samples.lit.emplace_back(samples.all.front());
+        const gl::buffer list(std::span<const glm::vec4>(samples.all));
+        const std::array<std::uint32_t, 4> start{infinity, infinity, 0u, 0u};
+        const gl::buffer bounds(sizeof start, start.data());
+        list.bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+        bounds.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+        find.set("view_size", size);
+        find.dispatch((size.x + 3) / 4, (size.y + 3) / 4);
+        glMemoryBarrier(GL_ALL_BARRIER_BITS);
+        const std::vector<float> device = bounds.read<float>();
+
+        glm::vec2 lo(std::numeric_limits<float>::infinity());
+        glm::vec2 hi(0.0f);
+        for (const glm::vec2& p : samples.lit) {
+            if (p.x >= 0.0f && p.x <= 1.0f && p.y >= 0.0f && p.y <= 1.0f) {
+                lo = glm::min(lo, p);
+                hi = glm::max(hi, p);
+            }
+        }
+        CHECK(device[0] == lo.x);
+        CHECK(device[1] == lo.y);
+        CHECK(device[2] == hi.x);
+        CHECK(device[3] == hi.y);
+    }
+}
