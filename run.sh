@@ -17,6 +17,7 @@ usage: ./run.sh [--no-install] [-j N] COMMAND
   nightly    the unit and property tests at -O0, -O1, -O2 and -O3, with fresh seeds
   bench ...  build and run the benchmarks
   docs       build the reference in build/docs
+  first-light  measure again what the first block of README.md shows, and write it
   help       this text
 
   --no-install   never install a Debian package; say which are missing instead
@@ -224,6 +225,17 @@ command_docs() {
     printf 'build/docs/html/index.html\n'
 }
 
+command_first-light() {
+    local folder=$root/docs/first-light
+    lab --out "$root/build/first-light"
+    cp "$root/build/first-light/results.json" "$folder/results.json"
+    local method
+    for method in sm notw; do
+        cp "$root/build/first-light/outdoor-c0-l0-m512-$method.png" "$folder/outdoor-$method.png"
+    done
+    python3 "$folder/write_readme.py"
+}
+
 command_help() {
     usage
 }
@@ -248,7 +260,7 @@ while (($#)); do
         arguments=("$@")
         break
         ;;
-    demo | test | nightly | docs | help) command=$1 ;;
+    demo | test | nightly | docs | first-light | help) command=$1 ;;
     *) die "unknown argument $1 (./run.sh help)" ;;
     esac
     shift

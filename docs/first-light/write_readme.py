@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Writes the first block of README.md from docs/first-light/results.json.
+
+usage: docs/first-light/write_readme.py [--check]
+
+With --check nothing is written; the exit code tells whether the block is what the results say.
+The results and pictures come from `./run.sh first-light`.
+"""
+
+import json
+import pathlib
+import re
+import sys
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+README = FOLDER.parent.parent / "README.md"
+BLOCK = re.compile(r"(<!-- first-light:begin -->\n).*?(<!-- first-light:end -->)", re.DOTALL)
+NAMES = {
+    "sm": "plain shadow map",
+    "dv": "focused on what is seen (`dv`)",
+    "notw": "warped (`notw`)",
+    "notw-nodv": "warped, not focused (`notw-nodv`)",
+    "raytraced": "ray traced",
+}
+
+
+def per_cent(run):
+    return f"{100.0 * run['wrong_pixel_ratio']:.3g} %"
+
+
+def block():
+    results = json.loads((FOLDER / "results.json").read_text(encoding="utf-8"))
+    runs = results["runs"]
+    shown = {r["method"]: r for r in runs if r["scene"] == "outdoor"}
+    side = shown["sm"]["map"]
+    lines = [
+        f"| {per_cent(shown['sm'])} of the lit-facing pixels wrong: plain shadow map, {side}² "
+        f"| {per_cent(shown['notw'])} wrong: warped, {side}² |",
+        "|---|---|",
+        "| ![plain shadow map](docs/first-light/outdoor-sm.png) "
+        "| ![warped shadow map](docs/first-light/outdoor-notw.png) |",
+        "",
+        "| scene | method | wrong pixels | frame, ms | memory, MiB |",
+        "|---|---|---:|---:|---:|",
+    ]
+    for run in runs:
+        lines.append(
+            f"| {run['scene']} | {NAMES.get(run['method'], run['method'])} | {per_cent(run)} "
+            f"| {run['frame_ms']['median']:.0f} | {run['bytes'] / 2**20:.1f} |"
+        )
+    width, height = runs[0]["view"]
+    lines += [
+        "",
+        f"{width} × {height} pixels, {side}² texels, against ray-traced shadows; the frame is everything "
+        f"from the G-buffer to the shadow test, on {results['device']['renderer']}, which is "
+        "a processor and no GPU. Written by `./run.sh first-light`.",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def main():
+    check = sys.argv[1:] == ["--check"]
+    if sys.argv[1:] and not check:
+        sys.exit(__doc__.strip())
+    text = README.read_text(encoding="utf-8")
+    if not BLOCK.search(text):
+        sys.exit("README.md has no first-light block")
+    updated = BLOCK.sub(lambda found: found.group(1) + block() + found.group(2), text)
+    if check:
+        if updated != text:
+            sys.exit("README.md does not say what docs/first-light/results.json says: "
+                     "run docs/first-light/write_readme.py")
+    else:
+        README.write_text(updated, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
