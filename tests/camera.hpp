@@ -102,6 +102,15 @@ inline warpshadow::clip_space any_convention() {
                                               rc::gen::inRange<std::size_t>(0, 32))];
 }
 
+/// A few of them: for tests whose oracle is slow, which see them all over many cases.
+inline std::vector<warpshadow::clip_space> some_conventions(int count) {
+    std::vector<warpshadow::clip_space> some;
+    for (int i = 0; i < count; ++i) {
+        some.push_back(any_convention());
+    }
+    return some;
+}
+
 /// A number between `lo` and `hi`, evenly distributed whatever RapidCheck's size is.
 template <typename T> T between(double lo, double hi) {
     const std::int64_t steps = std::int64_t(1) << 52;

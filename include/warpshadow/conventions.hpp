@@ -9,9 +9,11 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace warpshadow {
 
@@ -57,22 +59,17 @@ view_volume<T> perspective_volume(T fov_y, T aspect, T near_distance, T far_dist
     if (!valid) {
         return view_volume<T>{};
     }
-    const T half_width = static_cast<T>(x);
-    const T half_height = static_cast<T>(y);
-    return view_volume<T>{-half_width,   half_width,   -half_height, half_height,
-                          near_distance, far_distance, false};
+    const T w = static_cast<T>(x);
+    const T h = static_cast<T>(y);
+    return view_volume<T>{-w, w, -h, h, near_distance, far_distance, false};
 }
 
 /// Symmetric orthographic volume, `width` and `height` in scene units.
 template <typename T>
 view_volume<T> orthographic_volume(T width, T height, T near_distance, T far_distance) {
-    return view_volume<T>{T(-0.5) * width,
-                          T(0.5) * width,
-                          T(-0.5) * height,
-                          T(0.5) * height,
-                          near_distance,
-                          far_distance,
-                          true};
+    const T w = T(0.5) * width;
+    const T h = T(0.5) * height;
+    return view_volume<T>{-w, w, -h, h, near_distance, far_distance, true};
 }
 
 /// Perspective volume of a calibrated pinhole camera, whose axis need not be in the middle.
@@ -87,13 +84,9 @@ view_volume<T> pinhole_volume(glm::vec<2, T> focal, glm::vec<2, T> centre, glm::
     if (!valid) {
         return view_volume<T>{};
     }
-    return view_volume<T>{-centre.x / focal.x,
-                          (size.x - centre.x) / focal.x,
-                          (centre.y - size.y) / focal.y,
-                          centre.y / focal.y,
-                          near_distance,
-                          far_distance,
-                          false};
+    const glm::vec<2, T> from = -centre / focal;
+    const glm::vec<2, T> to = (size - centre) / focal;
+    return view_volume<T>{from.x, to.x, -to.y, -from.y, near_distance, far_distance, false};
 }
 
 namespace detail {
@@ -110,32 +103,28 @@ template <typename To, typename From> view_volume<To> convert(const view_volume<
         v.orthographic};
 }
 
-/// Moves `lo` and `hi` apart by `size` * relative_floor if they coincide.
+/// Moves `lo` and `hi` apart by 2^-19 of `size` if they coincide.
 inline status separate(double& lo, double& hi, double size) {
     if (lo != hi) {
         return status::ok;
     }
-    const double half = relative_floor * 0x1p4 * size;
-    lo -= half;
-    hi += half;
+    lo -= 0x1p-20 * size;
+    hi += 0x1p-20 * size;
     return status::degenerate_extent;
 }
 
 /// The documented repairs of a volume; `volume_result::volume` can be projected if not invalid.
 inline volume_result<double> repaired(view_volume<double> v) {
     const volume_result<double> invalid{neutral_volume<double>(), status::invalid_input};
-    const bool finite = std::isfinite(v.left) && std::isfinite(v.right) &&
-                        std::isfinite(v.bottom) && std::isfinite(v.top) &&
-                        std::isfinite(v.near_distance) && !std::isnan(v.far_distance) &&
-                        v.far_distance > -std::numeric_limits<double>::infinity();
-    if (!finite || (!v.orthographic && !(v.far_distance > 0.0))) {
+    const double lowest = v.orthographic ? std::numeric_limits<double>::lowest() : 0.0;
+    const bool usable = all_finite(glm::vec<4, double>(v.left, v.right, v.bottom, v.top)) &&
+                        std::isfinite(v.near_distance) && v.far_distance >= lowest;
+    if (!usable || (!v.orthographic && v.far_distance == 0.0)) {
         return invalid;
     }
     status flags = status::ok;
     if (v.far_distance < v.near_distance) {
-        const double swapped = v.near_distance;
-        v.near_distance = v.far_distance;
-        v.far_distance = swapped;
+        std::swap(v.near_distance, v.far_distance);
         flags |= status::out_of_range;
     }
     if (!v.orthographic && !(v.near_distance > 0.0)) {
@@ -148,13 +137,15 @@ inline volume_result<double> repaired(view_volume<double> v) {
     double size = std::fmax(std::fmax(std::abs(v.left), std::abs(v.right)),
                             std::fmax(std::abs(v.bottom), std::abs(v.top)));
     if (v.orthographic) {
+        const bool endless = std::isinf(v.far_distance);
         size = std::fmax(size, std::abs(v.near_distance));
-        size = std::isinf(v.far_distance) ? size : std::fmax(size, std::abs(v.far_distance));
-        if (!(size > 0.0)) {
+        size = std::fmax(size, endless ? 0.0 : std::abs(v.far_distance));
+    }
+    if (!(size > 0.0)) {
+        if (v.orthographic) {
             return invalid;
         }
-    } else {
-        size = size > 0.0 ? size : 1.0; // slopes have no unit
+        size = 1.0; // slopes have no unit
     }
     flags |= separate(v.left, v.right, size);
     flags |= separate(v.bottom, v.top, size);
@@ -167,10 +158,12 @@ inline volume_result<double> repaired(view_volume<double> v) {
 
 /// Whether a repaired volume is still one when it is rounded to T.
 template <typename T> bool representable(const view_volume<double>& v) {
-    const bool endless = std::isinf(v.far_distance);
-    if (!fits<T>(v.left) || !fits<T>(v.right) || !fits<T>(v.right - v.left) || !fits<T>(v.bottom) ||
-        !fits<T>(v.top) || !fits<T>(v.top - v.bottom) || !fits<T>(v.near_distance) ||
-        !(endless || (fits<T>(v.far_distance) && fits<T>(v.far_distance - v.near_distance)))) {
+    using dvec4 = glm::vec<4, double>;
+    // a far distance at infinity is as good as the near one here
+    const double f = std::isinf(v.far_distance) ? v.near_distance : v.far_distance;
+    if (!fits<T>(dvec4(v.left, v.right, v.bottom, v.top)) ||
+        !fits<T>(dvec4(v.right - v.left, v.top - v.bottom, v.near_distance, f - v.near_distance)) ||
+        !fits<T>(f)) {
         return false;
     }
     const view_volume<T> r = convert<T>(v);
@@ -229,6 +222,10 @@ projection_result<T> make_projection(const view_volume<T>& volume, clip_space cl
         return result;
     }
     const view_volume<double>& v = checked.volume;
+    if (!detail::representable<T>(v)) {
+        result.flags |= status::out_of_range;
+        return result;
+    }
     const detail::depth_row depth = detail::depth_row_of(v, clip);
     const double width = v.right - v.left;
     const double height = clip.y_down ? v.bottom - v.top : v.top - v.bottom;
@@ -249,7 +246,7 @@ projection_result<T> make_projection(const view_volume<T>& volume, clip_space cl
         m[2][1] = ahead * shift_y;
         m[2][3] = ahead;
     }
-    if (!detail::representable<T>(v) || !detail::fits<T>(m)) {
+    if (!detail::fits<T>(m)) {
         result.flags |= status::out_of_range;
         return result;
     }

@@ -1,6 +1,7 @@
 // Fitting the map to what is seen: the desired view, and the crop that focuses a light matrix.
 #pragma once
 
+#include <warpshadow/detail/finite.hpp>
 #include <warpshadow/status.hpp>
 
 #include <glm/mat4x4.hpp>
@@ -115,7 +116,8 @@ template <typename T> struct crop_result {
 ///
 /// The map is NDC · ½ + ½. Built in double and rounded once.
 /// @param light clip-from-world matrix of the light
-/// @param rect  rectangle of its map; a side of no length or a NaN leaves the matrix as it is
+/// @param rect  rectangle of its map; a side of no length, a NaN, or a crop that is not finite in
+///              T leaves the matrix as it is
 template <typename T>
 crop_result<T> crop_matrix(const glm::mat<4, 4, T>& light, const map_rect<T>& rect) {
     const glm::dvec2 lo(rect.lo);
@@ -132,6 +134,9 @@ crop_result<T> crop_matrix(const glm::mat<4, 4, T>& light, const map_rect<T>& re
     for (int column = 0; column < 4; ++column) {
         cropped[column].x = scale.x * cropped[column].x + shift.x * cropped[column].w;
         cropped[column].y = scale.y * cropped[column].y + shift.y * cropped[column].w;
+    }
+    if (!detail::fits<T>(cropped)) {
+        return {light, status::invalid_input};
     }
     return {glm::mat<4, 4, T>(cropped), status::ok};
 }

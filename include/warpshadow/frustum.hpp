@@ -46,8 +46,8 @@ template <typename T> struct frustum_result {
 /// replaced by the up axis of `light_frame(forward)`, a function of `forward` alone that is
 /// continuous except at forward = +y: `up_replaced`. A zero or non-finite `forward` becomes -z, a
 /// non-finite eye the origin, an unusable volume the neutral one: `invalid_input`.
-/// Each component of an axis is within 1 ulp of 1 (T = float; 4 ulp / sin(angle to the hint) for
-/// double).
+/// Each component of an axis is within 1 ulp of 1 (T = float) or 4 ulp / sin(angle to the hint)
+/// (double).
 template <typename T>
 frustum_result<T> make_frustum(const glm::vec<3, T>& eye, const glm::vec<3, T>& forward,
                                const glm::vec<3, T>& up_hint, const view_volume<T>& volume,
@@ -65,7 +65,7 @@ frustum_result<T> make_frustum(const glm::vec<3, T>& eye, const glm::vec<3, T>& 
     const dvec3 f = detail::unit(ahead);
     const dvec3 hint(up_hint);
     detail::frame axes = detail::frame_from_unit(f);
-    if (!detail::is_direction(hint) || !detail::frame_from_up(ahead, f, hint, axes)) {
+    if (!detail::is_direction(hint) || !detail::frame_from_up(f, hint, axes)) {
         flags |= status::up_replaced;
     }
     const dvec3 right = left_handed_world ? -axes.right : axes.right;

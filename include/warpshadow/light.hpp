@@ -222,6 +222,9 @@ light_matrix_result<T> spot_light_matrix(const light<T>& source, T near_distance
         return invalid;
     }
     flags |= checked.flags;
+    if (!detail::representable<T>(checked.volume)) {
+        return light_matrix_result<T>{invalid.matrix, flags | status::out_of_range};
+    }
     const detail::depth_row depth = detail::depth_row_of(checked.volume, clip);
     const double across = 1.0 / slope;
     const double upwards = clip.y_down ? -across : across;

@@ -49,8 +49,9 @@ template <typename T> struct build_result {
 /// @tparam Node  stored type
 /// @param  cells cells of a function, positive
 /// @return       cells · 2⁻²³ for float: an increment of ε / cells is two steps near 1, rounding
-///               takes at most one. cells / 65534 for 16 bits: just above one step. cells · 2⁻⁵⁰ for
-///               double, where both nodes carry an error of up to 3.5 · 2⁻⁵³ from their computation
+///               takes at most one. cells / 65534 for 16 bits: just above one step. cells · 2⁻⁵⁰
+///               for double, where both nodes carry an error of up to 3.5 · 2⁻⁵³ from their
+///               computation
 template <typename T, typename Node> T smallest_floor(int cells) {
     if constexpr (std::is_integral_v<Node>) {
         // a floor that is rounded down must not fall below one step

@@ -93,12 +93,11 @@ TEMPLATE_TEST_CASE("make_frustum: the axes are those of exact arithmetic", "", f
         const frustum_result<T> made =
             make_frustum(glm::vec<3, T>(T(0)), forward, up, ordinary_volume<T>());
         RC_ASSERT(made.flags == status::ok);
-        // float: rounding to T, and double arithmetic on exact products; double: the products are
-        // rounded, which turns the axes by u / sine
+        // rounding to T, and the rounding of two unit vectors in double, amplified
         const double u = roundoff<T>();
-        const double bound = is_float<T> ? 1.001 * u : 8.0 * u / sine;
+        const double bound = (is_float<T> ? u : 0.0) + 8.0 * 0x1p-53 / sine;
         const real3 right = unit(side);
-        RC_ASSERT(largest_difference(made.value.forward, f) <= 8.0 * u);
+        RC_ASSERT(largest_difference(made.value.forward, f) <= (is_float<T> ? 1.001 : 8.0) * u);
         RC_ASSERT(largest_difference(made.value.right, right) <= bound);
         RC_ASSERT(largest_difference(made.value.up, cross(right, f)) <= bound);
         RC_ASSERT(
@@ -156,6 +155,22 @@ TEMPLATE_TEST_CASE("peers 2, 21: an up hint that says nothing is replaced", "", 
                                   axis_error<T> * roundoff<T>()));
         }
     }));
+}
+
+TEMPLATE_TEST_CASE("peers 3, 8: an endless orthographic volume is a frustum like any other", "",
+                   float, double) {
+    using T = TestType;
+    using vec3 = glm::vec<3, T>;
+    const view_volume<T> v{T(-1), T(1), T(-2), T(2), T(-5), infinity<T>, true};
+    const frustum_result<T> made =
+        make_frustum(vec3(T(0)), vec3(T(0), T(0), T(-1)), vec3(T(0), T(1), T(0)), v);
+    CHECK(made.flags == status::ok);
+    const auto corners = frustum_corners(made.value);
+    CHECK((corners[0] == glm::vec<4, T>(T(-1), T(-2), T(5), T(1))));
+    CHECK((corners[2] == glm::vec<4, T>(T(1), T(2), T(5), T(1))));
+    for (std::size_t i = 4; i < 8; ++i) {
+        CHECK((corners[i] == glm::vec<4, T>(T(0), T(0), T(-1), T(0))));
+    }
 }
 
 TEMPLATE_TEST_CASE("make_frustum and view_matrix agree with GLM's lookAt", "", float, double) {
@@ -229,7 +244,9 @@ TEMPLATE_TEST_CASE("B1: direct corners keep their accuracy at far/near 1e7, 1e6 
                 const auto corners = frustum_corners(make_frustum(eye, forward, up, v).value);
                 const double bound = (is_float<T> ? 2.74 : 8.0 + 14.0 / sine) * roundoff<T>();
                 RC_ASSERT(bound <= 1e-6); // what the claim is for float
-                for (std::size_t i = 0; i < 8; ++i) {
+                const std::size_t any =
+                    *rc::gen::resize(rc::kNominalSize, rc::gen::inRange<std::size_t>(0, 4));
+                for (const std::size_t i : {any, 4 + any}) {
                     const real x = i % 4 == 1 || i % 4 == 2 ? v.right : v.left;
                     const real y = i % 4 >= 2 ? v.top : v.bottom;
                     const real d = i < 4 ? v.near_distance : v.far_distance;
@@ -325,7 +342,7 @@ TEMPLATE_TEST_CASE("corners project to the corners of the NDC cube in every conv
         const view_volume<T>& v = camera.volume;
         const auto corners = frustum_corners(camera);
         const double u = roundoff<T>();
-        for (const clip_space clip : all_conventions()) {
+        for (const clip_space clip : some_conventions(2)) {
             const glm::mat<4, 4, T> view = view_matrix(camera, clip, camera.eye);
             const glm::mat<4, 4, T> projection = projection_matrix(v, clip);
             for (std::size_t i = 0; i < 8; ++i) {
@@ -469,7 +486,7 @@ TEMPLATE_TEST_CASE("frustum_from_matrices finds the camera again in every conven
         const frustum<T> camera = any_frustum<T>(orthographic, 1e3, 1e3);
         const view_volume<T>& v = camera.volume;
         const double u = roundoff<T>();
-        for (clip_space clip : all_conventions()) {
+        for (const clip_space clip : some_conventions(4)) {
             const auto found =
                 frustum_from_matrices(view_matrix(camera, clip), projection_matrix(v, clip), clip);
             RC_ASSERT(found.flags == status::ok);

@@ -734,8 +734,9 @@ TEMPLATE_TEST_CASE("build_warp knows no order of samples and reports what it met
         const built_warp<T> first(samples, size, options);
         std::shuffle(samples.begin(), samples.end(), std::mt19937_64(d.bits()));
         const built_warp<T> second(samples, size, options);
-        RC_ASSERT(first.row_nodes == second.row_nodes);
-        RC_ASSERT(first.column_nodes == second.column_nodes);
+        const bool same =
+            first.row_nodes == second.row_nodes && first.column_nodes == second.column_nodes;
+        RC_ASSERT(same);
         RC_ASSERT(first.result.splat.counted == good);
         RC_ASSERT(first.result.splat.rejected == static_cast<std::uint64_t>(bad));
         RC_ASSERT(any(first.result.flags, status::samples_rejected) == (bad != 0));
@@ -745,6 +746,34 @@ TEMPLATE_TEST_CASE("build_warp knows no order of samples and reports what it met
         RC_ASSERT(first.result.rows.nodes.data() == first.row_nodes.data());
         RC_ASSERT(first.result.columns.cells == size);
         RC_ASSERT(first.result.columns.rows == size);
+    }));
+}
+
+TEMPLATE_TEST_CASE(
+    "build_warp is splat, build_axis, splat_columns, build_axis, whatever memory held", "", float,
+    double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const int size = d.size(80);
+        const points<T> samples = scene_samples<T>(d, d.between(1, 400));
+        const build_options<T> options = options_of<T>(d.between(0.0, 1.0), d.between(0.01, 1.0));
+        const auto n = static_cast<std::size_t>(size);
+        std::vector<std::uint32_t> counts(n * n, 123u);
+        std::vector<std::uint64_t> scratch(n, 456u);
+        std::vector<T> row_nodes(n * (n + 1), T(7));
+        std::vector<T> column_nodes(n * (n + 1), T(7));
+        build_warp<T, T>(samples, options,
+                         warp_memory<T>{size, counts, scratch, row_nodes, column_nodes});
+
+        owned_counts by_row(size, size);
+        splat(span_of(samples), by_row.map());
+        const built_axis<T, T> rows(by_row, options);
+        owned_counts by_column(size, size);
+        splat_columns<T, T>(span_of(samples), rows.view(), by_column.map());
+        const built_axis<T, T> columns(by_column, options);
+        const bool same = row_nodes == rows.nodes && column_nodes == columns.nodes;
+        RC_ASSERT(same);
     }));
 }
 
@@ -1007,13 +1036,10 @@ const double cost_factor = 14.0;
 
 } // namespace
 
-TEMPLATE_TEST_CASE("round trip of a full map at w = 4096 and floor 0.02", "", float, double) {
-    using T = TestType;
+TEST_CASE("round trip of a full map of 4096 functions of 4096 cells at floor 0.02") {
     dice d(2024);
-    const points<T> samples = scene_samples<T>(d, 200000);
-    build_options<T> options;
-    options.floor = T(0.02);
-    const built_warp<T> built(samples, 4096, options);
+    const points<float> samples = scene_samples<float>(d, 200000);
+    const built_warp<float> built(samples, 4096, options_of<float>(0.12, 0.02));
     REQUIRE(built.result.flags == status::ok);
     const round_trip r = measure(built.result.rows, built.result.columns, samples, 10000);
     INFO(report(r));
@@ -1021,11 +1047,6 @@ TEMPLATE_TEST_CASE("round trip of a full map at w = 4096 and floor 0.02", "", fl
     // of the samples where the warp gives more of the map than a uniform one
     REQUIRE(r.dense >= 0.5);
     REQUIRE(r.dense_share >= 0.99);
-    if (std::is_same_v<T, double>) {
-        REQUIRE(r.samples <= 1e-9);
-        REQUIRE(r.warped <= 1e-9);
-        REQUIRE(r.warped_samples <= 1e-9);
-    }
 }
 
 TEMPLATE_TEST_CASE("round trip at w = 4096: window and floor decide what is left", "", float,

@@ -76,19 +76,13 @@ inline frame frame_from_unit_z_up(const dvec3& f) {
     return frame{dvec3(r.x, -r.z, r.y), dvec3(u.x, -u.z, u.y), f};
 }
 
-/// Frame that looks along `f` with `up_hint` upwards.
+/// Frame that looks along the unit vector `f` with the direction `up_hint` upwards.
 ///
-/// `forward` and `up_hint` are directions; `f` is the unit vector along `forward`.
 /// @param[out] result the frame, untouched if the answer is false
 /// @return whether the two span a plane: their angle is above 2^-40 rad
-inline bool frame_from_up(const dvec3& forward, const dvec3& f, const dvec3& up_hint,
-                          frame& result) {
-    // the cross product of the inputs, not of their rounded unit vectors: exact products when the
-    // inputs are floats, so that any hint that is not parallel counts in full
-    const dvec3 a = scaled_to_one(forward);
-    const dvec3 b = scaled_to_one(up_hint);
-    const dvec3 side = glm::cross(a, b);
-    if (!(glm::dot(side, side) > 0x1p-80 * glm::dot(a, a) * glm::dot(b, b))) {
+inline bool frame_from_up(const dvec3& f, const dvec3& up_hint, frame& result) {
+    const dvec3 side = glm::cross(f, unit(up_hint));
+    if (!(glm::dot(side, side) > 0x1p-80)) {
         return false;
     }
     dvec3 right = unit(side);
