@@ -1,0 +1,14 @@
+// The headers that tools/glslgen/shared.cpp shares functions of.
+#pragma once
+
+#include <warpshadow/bias.hpp>
+#include <warpshadow/clip_space.hpp>
+#include <warpshadow/conventions.hpp>
+#include <warpshadow/cube.hpp>
+#include <warpshadow/fit.hpp>
+#include <warpshadow/importance.hpp>
+#include <warpshadow/paraboloid.hpp>
+#include <warpshadow/projective.hpp>
+#include <warpshadow/status.hpp>
+#include <warpshadow/warp.hpp>
+#include <warpshadow/warp_build.hpp>

@@ -1,0 +1,106 @@
+// What is shared between C++ and GLSL: explicit instantiations for float, and by using-declarations
+// what is no template. The generator adds whatever these need.
+#include <warpshadow/bias.hpp>
+#include <warpshadow/clip_space.hpp>
+#include <warpshadow/conventions.hpp>
+#include <warpshadow/cube.hpp>
+#include <warpshadow/fit.hpp>
+#include <warpshadow/importance.hpp>
+#include <warpshadow/paraboloid.hpp>
+#include <warpshadow/projective.hpp>
+#include <warpshadow/status.hpp>
+#include <warpshadow/warp.hpp>
+#include <warpshadow/warp_build.hpp>
+
+using ivec2 = glm::vec<2, int>;
+using vec2 = glm::vec<2, float>;
+using vec3 = glm::vec<3, float>;
+using vec4 = glm::vec<4, float>;
+using mat2 = glm::mat<2, 2, float>;
+using mat3 = glm::mat<3, 3, float>;
+using mat4 = glm::mat<4, 4, float>;
+using table = warpshadow::table_view<float>;
+using settings = warpshadow::bias_settings<float>;
+using bias = warpshadow::depth_bias<float>;
+using axes = warpshadow::texel_axes<float>;
+using volume = warpshadow::view_volume<float>;
+
+// status
+using warpshadow::any;
+using warpshadow::status;
+
+// clip_space, conventions
+using warpshadow::clip_space;
+using warpshadow::clip::d3d;
+using warpshadow::clip::opengl;
+using warpshadow::clip::vulkan;
+template float warpshadow::near_depth<float>(clip_space);
+template float warpshadow::far_depth<float>(clip_space);
+template vec2 warpshadow::map_from_ndc<float>(vec2, clip_space);
+template vec2 warpshadow::ndc_from_map<float>(vec2, clip_space);
+template float warpshadow::eye_depth_from_ndc<float>(float, const volume&, clip_space);
+template float warpshadow::ndc_from_eye_depth<float>(float, const volume&, clip_space);
+
+// fit
+template bool warpshadow::widen_side<float>(float, float, float, float&, float&);
+template vec2 warpshadow::crop<float>(const warpshadow::map_rect<float>&, vec2);
+
+// importance
+template int warpshadow::cell_of<float>(float, int);
+
+// warp
+template warpshadow::row_blend<float> warpshadow::blend_rows<float>(float, int);
+template warpshadow::row_blend<float> warpshadow::floor_row<float>(float, int);
+template vec2 warpshadow::warp_offset<float, float>(const table&, const table&, vec2);
+template vec2 warpshadow::warp<float, float>(const table&, const table&, vec2);
+template vec2 warpshadow::unwarp<float, float>(const table&, const table&, vec2);
+template vec2 warpshadow::warp_floor<float, float>(const table&, const table&, vec2);
+template vec2 warpshadow::unwarp_floor<float, float>(const table&, const table&, vec2);
+template mat2 warpshadow::jacobian<float, float>(const table&, const table&, vec2);
+template vec4 warpshadow::warp_clip<float, float>(const table&, const table&, vec4);
+
+// warp_build
+template float warpshadow::warp_node<float, unsigned>(unsigned, unsigned, int, int, float);
+
+// bias
+template settings warpshadow::settings_for<float>(vec2, float);
+template float warpshadow::depth_quantum<float>(int);
+template vec3 warpshadow::map_normal<float>(vec3, vec3);
+template vec3 warpshadow::map_normal<float>(const mat4&, vec4);
+template vec3 warpshadow::warped_normal<float>(vec3, const mat2&);
+template bias warpshadow::footprint_bias<float>(vec3, const mat2&, const settings&);
+template bias warpshadow::corner_bias<float, float>(const table&, const table&, vec3, vec2,
+                                                    const settings&);
+template float warpshadow::plane_depth_step<float>(vec3, vec2, vec2, float);
+template float warpshadow::constant_bias<float>(float, float);
+template bias warpshadow::slope_scale_bias<float>(vec3, const settings&, float, float);
+template float warpshadow::polygon_offset_factor<float>(float);
+template float warpshadow::back_face_bias<float>(float, float);
+template float warpshadow::linear_depth<float>(float, float, vec3);
+template float warpshadow::linear_depth_vertex<float>(float, float);
+template bool warpshadow::linear_depth_allowed<float>(float, float, float);
+template axes warpshadow::texel_axes_at<float>(const mat4&, const mat2&, vec3, vec2);
+template float warpshadow::normal_offset<float>(vec3, const axes&, float);
+template vec2 warpshadow::filter_radii<float>(const axes&, float);
+
+// cube
+template warpshadow::cube_point<float> warpshadow::cube_lookup<float>(const vec3&);
+template vec3 warpshadow::cube_direction<float>(int, const vec2&);
+template ivec2 warpshadow::cube_texel<float>(const vec2&, int);
+template vec3 warpshadow::cube_texel_direction<float>(int, const ivec2&, int);
+template float warpshadow::cube_distance<float>(const vec3&);
+
+// paraboloid
+template float warpshadow::paraboloid_distance<float>(const vec3&);
+template float warpshadow::paraboloid_depth<float>(const vec3&, float, float);
+template vec2 warpshadow::paraboloid_uv<float>(const vec3&, int);
+template warpshadow::paraboloid_point<float> warpshadow::paraboloid_lookup<float>(const vec3&);
+template vec3 warpshadow::paraboloid_unproject<float>(const vec2&, int);
+template vec2 warpshadow::paraboloid_map<float>(const vec2&);
+template float warpshadow::paraboloid_clip<float>(const vec3&, int, float);
+template float warpshadow::chord_error<float>(float);
+template float warpshadow::longest_chord<float>(float, float);
+template float warpshadow::paraboloid_segments<float>(const vec3&, const vec3&, int, float);
+
+// projective
+template vec2 warpshadow::fitted_position<float>(const mat3&, vec2);
