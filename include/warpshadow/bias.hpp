@@ -100,21 +100,21 @@ glm::vec<3, T> warped_normal(glm::vec<3, T> normal, const glm::mat<2, 2, T>& jac
                           normal.y * jacobian[0][0] - normal.x * jacobian[1][0], normal.z * det);
 }
 
-/// rise / |normal_z| + fixed, clamped: the end of every bias.
+/// rise / |normal_z| + minimum, clamped: the end of every bias.
 ///
 /// @param rise    depth gained over the footprint times |normal_z|
 /// @param normal_z depth component of the normal that `rise` was made with
-/// @param fixed   what is added whatever the slope is
+/// @param minimum what is added whatever the slope is
 /// @param largest clamp
-template <typename T> depth_bias<T> clamped_bias(T rise, T normal_z, T fixed, T largest) {
+template <typename T> depth_bias<T> clamped_bias(T rise, T normal_z, T minimum, T largest) {
     depth_bias<T> result;
     result.value = largest;
     result.aliasing = true;
     // multiplied, not divided, before it is known to fit: an edge-on receiver has normal_z = 0
     T most = std::numeric_limits<T>::max();
     T height = glm::abs(normal_z);
-    if (height > T(0) && height <= most && rise <= most && rise <= (largest - fixed) * height) {
-        result.value = rise / height + fixed;
+    if (height > T(0) && height <= most && rise <= most && rise <= (largest - minimum) * height) {
+        result.value = rise / height + minimum;
         result.aliasing = false;
     }
     return result;

@@ -205,7 +205,8 @@ inline std::uint32_t faces_in_view(const frustum_terms& f, const face_options& o
     std::array<double, 6> inside;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<glm::length_t>(axis);
-        const interval own = support(f, f.offset[a], f.right[a], f.up[a], f.forward[a], closed);
+        const support_interval own =
+            support(f, f.offset[a], f.right[a], f.up[a], f.forward[a], closed);
         inside[2 * axis] = glm::min(own.hi, options.range - own.lo);
         inside[2 * axis + 1] = glm::min(-own.lo, options.range + own.hi);
     }
@@ -221,16 +222,16 @@ inline std::uint32_t faces_in_view(const frustum_terms& f, const face_options& o
                            on_a * f.right[a] + on_b * f.right[b], on_a * f.up[a] + on_b * f.up[b],
                            on_a * f.forward[a] + on_b * f.forward[b], closed * (1.0 + k));
         };
-        const interval sum = bounds(k, 1.0);
-        const interval difference = bounds(k, -1.0);
+        const support_interval sum = bounds(k, 1.0);
+        const support_interval difference = bounds(k, -1.0);
         least(2 * i, sum.hi, difference.hi);
         least(2 * i + 1, -sum.lo, -difference.lo);
         if (k == 1.0) {
             least(2 * j, sum.hi, -difference.lo);
             least(2 * j + 1, -sum.lo, difference.hi);
         } else {
-            const interval other_sum = bounds(1.0, k);
-            const interval other_difference = bounds(1.0, -k);
+            const support_interval other_sum = bounds(1.0, k);
+            const support_interval other_difference = bounds(1.0, -k);
             least(2 * j, other_sum.hi, -other_difference.lo);
             least(2 * j + 1, -other_sum.lo, other_difference.hi);
         }

@@ -161,7 +161,7 @@ template <typename T> cull_result intersects(const cull_volume& a, const sphere3
     }
     // ... or on an edge
     const double reach = radius + 8.0 * detail::rounding_unit * extent;
-    for (const auto& edge : detail::edges) {
+    for (const auto& edge : detail::corner_pairs) {
         const dvec3 from = detail::corner(volume, edge[0]);
         const dvec3 along = detail::corner(volume, edge[1]) - from;
         const double square = glm::dot(along, along);
@@ -237,7 +237,7 @@ template <typename T> cull_result intersects(const cull_volume& a, const cone3<T
     const auto within = [&](const dvec3& x, double bound) {
         return glm::dot(axis, x) - cosine * glm::length(x) + bound >= 0.0;
     };
-    for (const auto& edge : detail::edges) {
+    for (const auto& edge : detail::corner_pairs) {
         const double w0 = a.w[edge[0]];
         const double w1 = a.w[edge[1]];
         const dvec3 from = detail::corner(a, edge[0]) + w0 * offset;

@@ -255,7 +255,7 @@ mask_result side_mask(const glm::vec<3, T>& light, const glm::vec<3, T>& axis,
     for (const frustum<T>& view : views) {
         const detail::frustum_terms f = detail::make_terms(view, dvec3(light));
         result.flags |= f.flags;
-        const detail::interval along =
+        const detail::support_interval along =
             detail::support(f, glm::dot(g, f.offset), glm::dot(g, f.right), glm::dot(g, f.up),
                             glm::dot(g, f.forward), size);
         // a sphere around the light that holds the view, or no bound at all

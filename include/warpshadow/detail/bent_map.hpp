@@ -108,7 +108,7 @@ inline glm::mat<3, 3, double> map_matrix(const bent_map& bent) {
 }
 
 /// Largest coordinate that a corner may have: a million maps away is an error.
-inline constexpr double farthest = 0x1p20;
+inline constexpr double farthest_corner = 0x1p20;
 
 /// Replaces the region by the corners that the caller gave, if any; `centre` is kept inside.
 template <typename T>
@@ -120,7 +120,7 @@ void restrict_region(std::span<const glm::vec<2, T>> domain, map_region& region,
     for (const glm::vec<2, T>& corner : domain) {
         const glm::dvec2 p(corner);
         // far from the map, infinite or NaN
-        if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest)) {
+        if (!(std::abs(p.x) <= farthest_corner && std::abs(p.y) <= farthest_corner)) {
             flags |= status::samples_rejected;
             continue;
         }

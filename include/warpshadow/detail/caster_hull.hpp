@@ -42,7 +42,7 @@ struct hull_of_view_and_light {
 
 inline std::size_t edge_end(std::size_t edge, std::size_t end) {
     if (edge < 12) {
-        return edges[edge][end];
+        return corner_pairs[edge][end];
     }
     return end == 0 ? light_corner : edge - 12;
 }
@@ -91,7 +91,7 @@ inline void make_axes(hull_of_view_and_light& hull, const cull_volume& view) {
     for (std::size_t p = 0; p < 6; ++p) {
         add_axis(hull, normal(view, p));
     }
-    for (const auto& edge : edges) {
+    for (const auto& edge : corner_pairs) {
         const dvec3 n = glm::cross(hull.corners[edge[0]], hull.corners[edge[1]]);
         const hull_axis axis = project(hull, n);
         // of the planes through the light and an edge, those that have the hull on one side

@@ -14,18 +14,18 @@
 namespace warpshadow::detail {
 
 /// The twelve edges of a volume with eight corners.
-inline constexpr std::array<std::array<std::uint8_t, 2>, 12> edges{{{0, 1},
-                                                                    {1, 2},
-                                                                    {2, 3},
-                                                                    {3, 0},
-                                                                    {4, 5},
-                                                                    {5, 6},
-                                                                    {6, 7},
-                                                                    {7, 4},
-                                                                    {0, 4},
-                                                                    {1, 5},
-                                                                    {2, 6},
-                                                                    {3, 7}}};
+inline constexpr std::array<std::array<std::uint8_t, 2>, 12> corner_pairs{{{0, 1},
+                                                                           {1, 2},
+                                                                           {2, 3},
+                                                                           {3, 0},
+                                                                           {4, 5},
+                                                                           {5, 6},
+                                                                           {6, 7},
+                                                                           {7, 4},
+                                                                           {0, 4},
+                                                                           {1, 5},
+                                                                           {2, 6},
+                                                                           {3, 7}}};
 
 /// Values of the corners of one volume on the planes of another, each raised by its bound, and one
 /// bit per plane that a corner lies outside of.
@@ -91,7 +91,7 @@ inline bool corners_against_planes(const cull_volume& planes, const cull_volume&
 
 /// Whether some edge has a point inside all planes.
 inline bool edge_meets_planes(const outcodes& corners) {
-    for (const auto& edge : edges) {
+    for (const auto& edge : corner_pairs) {
         const std::size_t i = edge[0];
         const std::size_t j = edge[1];
         if ((corners.code[i] & corners.code[j]) != 0) {

@@ -73,15 +73,15 @@ template <typename T> frustum_terms make_terms(const frustum<T>& camera, const d
 }
 
 /// Bounds of a linear function: not inside what is true (closed), or not outside of it (open).
-struct interval {
+struct support_interval {
     double lo, hi;
 };
 
 /// Bounds of g over the frustum, g being given by its values on the offset and on the three axes.
 ///
-/// `size`: |g|; negated, the interval is narrowed by the rounding instead of widened.
-inline interval support(const frustum_terms& f, double on_offset, double on_right, double on_up,
-                        double on_forward, double size) {
+/// `size`: |g|; negated, the support_interval is narrowed by the rounding instead of widened.
+inline support_interval support(const frustum_terms& f, double on_offset, double on_right,
+                                double on_up, double on_forward, double size) {
     const double x0 = f.left * on_right;
     const double x1 = f.rightmost * on_right;
     const double y0 = f.bottom * on_up;
@@ -112,9 +112,10 @@ inline interval support(const frustum_terms& f, double on_offset, double on_righ
     if (f.far_weight == 0.0) {
         // directions: the function grows without end along them, or they do not count
         const double infinity = std::numeric_limits<double>::infinity();
-        return interval{far_lo <= 0.0 ? -infinity : near_lo, far_hi >= 0.0 ? infinity : near_hi};
+        return support_interval{far_lo <= 0.0 ? -infinity : near_lo,
+                                far_hi >= 0.0 ? infinity : near_hi};
     }
-    return interval{glm::min(near_lo, far_lo), glm::max(near_hi, far_hi)};
+    return support_interval{glm::min(near_lo, far_lo), glm::max(near_hi, far_hi)};
 }
 
 } // namespace warpshadow::detail
