@@ -14,8 +14,8 @@ usage: ./run.sh [--no-install] [-j N] COMMAND
   lab ...    build warpshadow-lab and pass it the arguments (lab --help lists them)
   view ...   build the interactive viewer and pass it the arguments
   test       everything that has to pass: GCC, Clang, sanitizers, formatting, consumers
-  nightly    the unit and property tests at -O0, -O1, -O2 and -O3, with fresh seeds
-  bench ...  build and run the benchmarks
+  nightly    unit and property tests at -O0 to -O3 with fresh seeds; builds the benchmarks
+  bench ...  build the benchmarks and run all, or the named one with the arguments that follow
   docs       build the reference in build/docs
   first-light  measure again what the first block of README.md shows, and write it
   help       this text
@@ -182,7 +182,8 @@ command_view() {
 }
 
 command_test() {
-    need build lab samples test generator bench
+    local groups=(build lab samples test generator)
+    need "${groups[@]}"
     # One seed for every run, so that a failure can be repeated; `nightly` draws fresh ones.
     export RC_PARAMS=${RC_PARAMS-seed=2015}
     local builds=()
@@ -196,26 +197,45 @@ command_test() {
     fi
     # What was not built would show up as packages that nothing needs.
     if ((${#builds[@]} == 2)); then
-        check "Debian packages" python3 tests/repository/check_packages.py "${builds[@]}" || true
+        check "Debian packages" python3 tests/repository/check_packages.py \
+            "$(IFS=,; printf %s "${groups[*]}")" "${builds[@]}" || true
     fi
     summary
 }
 
 command_nightly() {
-    need build test
+    need build lab samples test bench
     local level
     for level in -O0 -O1 -O2 -O3; do
         export WARPSHADOW_NIGHTLY_OPT=$level
         build "GCC, $level" nightly && run_ctest "GCC, $level" nightly || true
     done
+    check "Benchmarks: configure" cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON &&
+        check "Benchmarks: build" cmake --build --preset release --parallel "$jobs" &&
+        check "Debian packages of the benchmarks" python3 tests/repository/check_packages.py \
+            build,lab,samples,bench build/release || true
     summary
 }
 
+# bench: all of them; bench NAME ARGUMENT...: one. The benchmarks share test inputs and results
+# formats with tests and lab, hence those groups.
 command_bench() {
-    need build lab samples bench
-    (cd "$root" && cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON >/dev/null)
-    release warpshadow-bench
-    "$root/build/release/bin/warpshadow-bench" "$@"
+    need build lab samples test bench
+    (cd "$root" && cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON) >/dev/null
+    release warpshadow-benchmarks
+    local folder=$root/build/release/bench program
+    if (($#)); then
+        program=$folder/$1
+        [[ -f $program && -x $program ]] || die "no benchmark $1 (they are in bench/)"
+        "$program" "${@:2}"
+        return
+    fi
+    for program in "$folder"/*; do
+        if [[ -f $program && -x $program ]]; then
+            printf '\n%s\n' "${program##*/}"
+            "$program"
+        fi
+    done
 }
 
 command_docs() {

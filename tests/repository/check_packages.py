@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Proves packages.txt: every package in it is used, and nothing outside it is.
+"""Proves packages.txt: every package of the given groups is used, and nothing outside them is.
 
-usage: check_packages.py BUILD_FOLDER...
+usage: check_packages.py GROUP[,GROUP...] BUILD_FOLDER...
 
 Reads what the builds really did: ninja's recorded header dependencies, the commands in build.ninja,
 the programs in CMakeCache.txt and in the ctest files, and the libraries that warpshadow-lab opens.
@@ -17,16 +17,16 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-OPTIONAL_GROUPS = {"docs"}  # groups that `./run.sh test` does not install
 
 
-def read_list():
-    """Yields (group, package, kind, name) for each line of packages.txt."""
+def read_list(groups):
+    """Yields (package, kind, name) for each line of packages.txt that is of one of the groups."""
     for line in (ROOT / "packages.txt").read_text().splitlines():
         if line.strip() and not line.lstrip().startswith("#"):
             group, package, proof = line.split()
             kind, name = proof.split(":", 1)
-            yield group, package, kind, name
+            if group in groups:
+                yield package, kind, name
 
 
 def spellings(path):
@@ -151,15 +151,13 @@ def fault(builds, package, kind, name, listed):
 
 
 def main():
-    if len(sys.argv) < 2:
+    if len(sys.argv) < 3:
         sys.exit(__doc__)
-    builds = Builds(sys.argv[1:])
+    builds = Builds(sys.argv[2:])
     faults = []
-    rows = list(read_list())
-    listed = {package for _, package, _, _ in rows}
-    for group, package, kind, name in rows:
-        if group in OPTIONAL_GROUPS and package not in dependencies():
-            continue
+    rows = list(read_list(sys.argv[1].split(",")))
+    listed = {package for package, _, _ in rows}
+    for package, kind, name in rows:
         problem = fault(builds, package, kind, name, listed)
         if problem:
             faults.append(f"{package}: listed, but {problem}")
