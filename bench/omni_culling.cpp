@@ -69,7 +69,7 @@ bool point_or_edge_inside(const scalar_frustum& a, const scalar_frustum& b) {
             return true;
         }
     }
-    for (const auto& edge : detail::edges) {
+    for (const auto& edge : detail::corner_pairs) {
         const glm::dvec3& p = b.corners[edge[0]];
         const glm::dvec3& q = b.corners[edge[1]];
         double enter = 0.0;
