@@ -26,9 +26,9 @@ namespace {
 
 constexpr std::array<std::string_view, 5> names{"sm", "dv", "notw", "notw-nodv", "raytraced"};
 
-/// When the shadow pass cuts an edge, in texels of the map: always above the first, never below the
-/// second, and in between when the warp bends it by more than the third.
-constexpr double always_cut_texels = 5.0;
+/// When the shadow pass cuts an edge: always above this share of the map (Rosen 2012, Milet et al.
+/// 2015), never below so many texels, and in between when the warp bends it by more than the last.
+constexpr double always_cut_share = 0.025;
 constexpr double never_cut_texels = 0.5;
 constexpr double bend_texels = 1.0;
 
@@ -323,8 +323,9 @@ struct renderer::state {
             table.bind_image(1, GL_WRITE_ONLY);
             const ws::build_options<float> options;
             build_axis.set("ws_radius", ws::window_radius(options.window, size));
+            // the device computes nodes in float: four times the floor that rounding once needs
             build_axis.set("ws_floor",
-                           std::max(options.floor, ws::smallest_floor<float, float>(size)));
+                           std::max(options.floor, 4.0f * ws::smallest_floor<float, float>(size)));
             build_axis.use();
             glDispatchCompute(static_cast<GLuint>(size), 1, 1);
             wait_for_writes();
@@ -355,7 +356,7 @@ struct renderer::state {
         const double size = map.depth.width();
         const double shortest = never_cut_texels / size;
         for (const gl::program* program : {&set_up_triangles, &cut_triangles}) {
-            program->set("longest", static_cast<float>(always_cut_texels / size));
+            program->set("longest", static_cast<float>(always_cut_share));
             program->set("shortest", static_cast<float>(shortest));
             program->set("deviation", static_cast<float>(bend_texels / size));
         }
