@@ -38,8 +38,8 @@ template <typename T> double depth_inside(const focus_input<T>& scene, const d3&
     const double ys =
         1.0 + (v.orthographic ? 0.0 : double(std::max(std::abs(v.bottom), std::abs(v.top))));
     double depth = std::min(z - double(v.near_distance), double(v.far_distance) - z);
-    const double x0 = std::min(v.left, v.right), x1 = std::max(v.left, v.right);
-    const double y0 = std::min(v.bottom, v.top), y1 = std::max(v.bottom, v.top);
+    const double x0 = double(std::min(v.left, v.right)), x1 = double(std::max(v.left, v.right));
+    const double y0 = double(std::min(v.bottom, v.top)), y1 = double(std::max(v.bottom, v.top));
     depth = std::min(depth, std::min(x - x0 * w, x1 * w - x) / xs);
     depth = std::min(depth, std::min(y - y0 * w, y1 * w - y) / ys);
     for (glm::length_t k = 0; k < 3; ++k) {
