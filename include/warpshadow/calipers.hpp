@@ -60,8 +60,9 @@ template <typename T> oriented_rectangle<T> no_rectangle(status flags) {
 /// The rectangle with these extents from an origin, along a unit axis and across it, all scaled.
 /// Precondition: the axis is the one nearest to +x.
 template <typename T>
-oriented_rectangle<T> unscaled(const scaled_points<T>& points, const glm::dvec2& origin,
-                               const glm::dvec2& axis, const glm::dvec2& lo, const glm::dvec2& hi) {
+inline oriented_rectangle<T> unscaled(const scaled_points<T>& points, const glm::dvec2& origin,
+                                      const glm::dvec2& axis, const glm::dvec2& lo,
+                                      const glm::dvec2& hi) {
     oriented_rectangle<T> result{};
     result.flags = points.all_finite ? status::ok : status::invalid_input;
     glm::dvec2 half = 0.5 * (hi - lo);

@@ -123,11 +123,12 @@ class inner_polygon {
   public:
     template <typename Item, typename Items>
     inner_polygon(std::span<const Item> items, const Items& at) {
-        constexpr std::size_t enough = 256; // of many points a sample is far out too
+        // Of many points, every sixteenth is far out enough.
+        const std::size_t stride = std::min<std::size_t>(1 + items.size() / 256, 16);
         std::array<glm::dvec2, size> corners{};
         std::array<double, size> reached;
         reached.fill(-std::numeric_limits<double>::infinity());
-        for (std::size_t i = 0; i < items.size(); i += 1 + items.size() / enough) {
+        for (std::size_t i = 0; i < items.size(); i += stride) {
             const glm::dvec2 p(at(items[i]));
             if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
                 continue;

@@ -296,10 +296,12 @@ template <typename T> struct vertex_set {
 };
 
 /// Vertices of what a frustum and a box have in common, both relative to the same origin: those of
-/// `intersection`, many times faster.
+/// `intersection`, several times faster.
 ///
-/// A point may occur twice where an edge of the frustum meets an edge of the box. The points are
-/// within 4 ulp of the corners' size of the exact ones.
+/// Precondition: products of two coordinates neither overflow nor underflow in double.
+/// A point may occur twice where an edge of the frustum meets an edge of the box, and a flat body
+/// is not reported as such. Computed in double and rounded once: points are as good as the corners
+/// and planes given, magnified where an edge grazes a plane by one over the sine of the angle.
 /// @param corners,planes as `frustum_corners` and `frustum_planes` give them
 /// @return `empty_body` where nothing is in common. An infinite or invalid box, or a corner or a
 ///         plane that is not finite, is handed to `intersection` with its status, which needs no

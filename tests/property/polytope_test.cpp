@@ -555,6 +555,12 @@ TEMPLATE_TEST_CASE("J22: an edge gives the same bits in both directions", "[poly
             for (glm::length_t k = 0; k < 3; ++k) {
                 RC_ASSERT(p[k] >= std::min(a[k], b[k]));
                 RC_ASSERT(p[k] <= std::max(a[k], b[k]));
+                using wide = long double; // 11 bits more than double, for a bound of 4 ulp
+                const wide exact =
+                    (wide(-db) * wide(a[k]) + wide(da) * wide(b[k])) / (wide(da) - wide(db));
+                const wide size = wide(std::max(std::abs(a[k]), std::abs(b[k])));
+                RC_ASSERT(std::abs(wide(p[k]) - exact) <=
+                          4.0L * wide(std::numeric_limits<T>::epsilon()) * size);
             }
         }
     }));
