@@ -26,9 +26,9 @@ namespace {
 
 constexpr std::array<std::string_view, 5> names{"sm", "dv", "notw", "notw-nodv", "raytraced"};
 
-/// When the shadow pass cuts an edge: always above this share of the map (Rosen 2012, Milet et al.
-/// 2015), never below so many texels, and in between when the warp bends it by more than the last.
-constexpr double always_cut_share = 0.025;
+/// When the shadow pass cuts an edge: always above this share of the map (the finest of Rosen
+/// 2012), never below so many texels, and in between when the warp bends it by more than the last.
+constexpr double always_cut_share = 0.01;
 constexpr double never_cut_texels = 0.5;
 constexpr double bend_texels = 1.0;
 
