@@ -81,10 +81,9 @@ class scratch_target {
         glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before_);
         glGenFramebuffers(1, &id_);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, id_);
-        glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER,
-                               is_depth(target.format()) ? GL_DEPTH_ATTACHMENT
-                                                         : GL_COLOR_ATTACHMENT0,
-                               GL_TEXTURE_2D, target.id(), 0);
+        glFramebufferTexture(GL_DRAW_FRAMEBUFFER,
+                             is_depth(target.format()) ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
+                             target.id(), 0);
     }
     scratch_target(const scratch_target&) = delete;
     scratch_target& operator=(const scratch_target&) = delete;
@@ -235,43 +234,52 @@ void buffer::fill(std::uint32_t value) {
 static constexpr GLuint spare_unit = 79;
 
 texture::texture(GLenum internal_format, int width, int height)
-    : handle_(generate(glGenTextures)), format_(internal_format), width_(width), height_(height) {
+    : texture(internal_format, width, height, 0) {}
+
+texture::texture(GLenum internal_format, int width, int height, int layers)
+    : handle_(generate(glGenTextures)), format_(internal_format), width_(width), height_(height),
+      layers_(layers) {
     bind(spare_unit);
-    glTexStorage2D(GL_TEXTURE_2D, 1, internal_format, width, height);
-    check("glTexStorage2D");
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    if (layers > 0) {
+        glTexStorage3D(target(), 1, internal_format, width, height, layers);
+    } else {
+        glTexStorage2D(target(), 1, internal_format, width, height);
+    }
+    check("glTexStorage");
+    glTexParameteri(target(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(target(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(target(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(target(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
 std::size_t texture::bytes() const {
     return format_ == GL_NONE ? 0
                               : texel_of(format_).bytes * static_cast<std::size_t>(width_) *
-                                    static_cast<std::size_t>(height_);
+                                    static_cast<std::size_t>(height_) *
+                                    static_cast<std::size_t>(std::max(layers_, 1));
 }
 
 void texture::bind(GLuint unit) const {
     glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(GL_TEXTURE_2D, id());
+    glBindTexture(target(), id());
 }
 
 void texture::bind_image(GLuint unit, GLenum access) const {
-    glBindImageTexture(unit, id(), 0, GL_FALSE, 0, access, format_);
+    glBindImageTexture(unit, id(), 0, layers_ > 0 ? GL_TRUE : GL_FALSE, 0, access, format_);
 }
 
 void texture::set_filter(GLenum filter) {
     bind(spare_unit);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+    glTexParameteri(target(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+    glTexParameteri(target(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
 }
 
 void texture::set_compare(GLenum function) {
     bind(spare_unit);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE,
+    glTexParameteri(target(), GL_TEXTURE_COMPARE_MODE,
                     function == GL_NONE ? GL_NONE : GL_COMPARE_REF_TO_TEXTURE);
     if (function != GL_NONE) {
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, static_cast<GLint>(function));
+        glTexParameteri(target(), GL_TEXTURE_COMPARE_FUNC, static_cast<GLint>(function));
     }
 }
 
@@ -294,7 +302,11 @@ void texture::write(const void* data) {
     const texel& t = texel_of(format_);
     bind(spare_unit);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, t.format, t.type, data);
+    if (layers_ > 0) {
+        glTexSubImage3D(target(), 0, 0, 0, 0, width_, height_, layers_, t.format, t.type, data);
+    } else {
+        glTexSubImage2D(target(), 0, 0, 0, width_, height_, t.format, t.type, data);
+    }
 }
 
 void texture::read(void* data, std::size_t size) const {
@@ -304,7 +316,7 @@ void texture::read(void* data, std::size_t size) const {
     const texel& t = texel_of(format_);
     bind(spare_unit);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glGetTexImage(GL_TEXTURE_2D, 0, t.format, t.type, data);
+    glGetTexImage(target(), 0, t.format, t.type, data);
 }
 
 framebuffer::framebuffer(std::initializer_list<const texture*> colours, const texture* depth)
@@ -323,11 +335,37 @@ framebuffer::framebuffer(std::initializer_list<const texture*> colours, const te
         width_ = depth->width();
         height_ = depth->height();
     }
-    if (targets.empty()) {
+    finish(targets);
+}
+
+framebuffer framebuffer::of_layer(const texture& depth, int layer) {
+    framebuffer result;
+    result.handle_ = handle<detail::delete_framebuffer>(generate(glGenFramebuffers));
+    glBindFramebuffer(GL_FRAMEBUFFER, result.id());
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
+    result.width_ = depth.width();
+    result.height_ = depth.height();
+    result.finish({});
+    return result;
+}
+
+framebuffer framebuffer::of_layers(const texture& depth) {
+    framebuffer result;
+    result.handle_ = handle<detail::delete_framebuffer>(generate(glGenFramebuffers));
+    glBindFramebuffer(GL_FRAMEBUFFER, result.id());
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth.id(), 0);
+    result.width_ = depth.width();
+    result.height_ = depth.height();
+    result.finish({});
+    return result;
+}
+
+void framebuffer::finish(std::span<const GLenum> colours) {
+    if (colours.empty()) {
         glDrawBuffer(GL_NONE);
         glReadBuffer(GL_NONE);
     } else {
-        glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
+        glDrawBuffers(static_cast<GLsizei>(colours.size()), colours.data());
     }
     const GLenum state = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     if (state != GL_FRAMEBUFFER_COMPLETE) {

@@ -79,19 +79,24 @@ class buffer {
     std::size_t bytes_ = 0;
 };
 
-/// A 2D texture of immutable storage and one level; nearest filter, clamped to the edge.
+/// A 2D texture, or an array of them, of immutable storage and one level; nearest filter, clamped
+/// to the edge.
 class texture {
   public:
     texture() = default;
     texture(GLenum internal_format, int width, int height);
+    /// An array of `layers` textures, 1 or more.
+    texture(GLenum internal_format, int width, int height, int layers);
 
     [[nodiscard]] GLuint id() const { return handle_.id(); }
     [[nodiscard]] GLenum format() const { return format_; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
-    [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] int layers() const { return layers_; } ///< 0 for a texture that is no array
+    [[nodiscard]] std::size_t bytes() const;             ///< of all layers
 
     void bind(GLuint unit) const;
+    /// All layers of an array.
     void bind_image(GLuint unit, GLenum access) const;
     void set_filter(GLenum filter);
     /// Comparison for shadow samplers, or GL_NONE.
@@ -99,7 +104,8 @@ class texture {
     void clear(glm::vec4 value);  ///< float and normalised colour formats
     void clear(glm::uvec4 value); ///< unsigned integer formats
     void clear_depth(float value);
-    /// All texels, rows from below, tightly packed, in the client type that fits the format.
+    /// All texels, layer by layer, rows from below, tightly packed, in the client type that fits
+    /// the format.
     void write(const void* data);
     void read(void* data, std::size_t bytes) const;
     template <typename T> [[nodiscard]] std::vector<T> read() const {
@@ -109,10 +115,15 @@ class texture {
     }
 
   private:
+    [[nodiscard]] GLenum target() const {
+        return layers_ > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    }
+
     handle<detail::delete_texture> handle_;
     GLenum format_ = GL_NONE;
     int width_ = 0;
     int height_ = 0;
+    int layers_ = 0;
 };
 
 /// A framebuffer over textures that outlive it. Textures may be moved afterwards.
@@ -121,11 +132,16 @@ class framebuffer {
     framebuffer() = default;
     /// @throws gl::error when the attachments do not fit together.
     framebuffer(std::initializer_list<const texture*> colours, const texture* depth);
+    /// One layer of an array of depth textures, or all of them for layered drawing.
+    static framebuffer of_layer(const texture& depth, int layer);
+    static framebuffer of_layers(const texture& depth);
     [[nodiscard]] GLuint id() const { return handle_.id(); }
     /// Makes it the target of drawing and sets the viewport to its size.
     void bind() const;
 
   private:
+    void finish(std::span<const GLenum> colours);
+
     handle<detail::delete_framebuffer> handle_;
     int width_ = 0;
     int height_ = 0;

@@ -5,20 +5,20 @@
 #include "lab/measure.hpp"
 #include "lab/methods.hpp"
 #include "lab/options.hpp"
+#include "lab/path_runner.hpp"
 #include "lab/picture.hpp"
+#include "lab/progress.hpp"
 #include "lab/report.hpp"
 #include "lab/report_folder.hpp"
 #include "lab/results.hpp"
 #include "lab/scene.hpp"
+#include "lab/statistics.hpp"
 #include "lab/truth.hpp"
 
 #include <epoxy/gl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -26,10 +26,8 @@
 
 namespace {
 
-std::atomic<int> stop_signal{0};
-
-void on_signal(int number) {
-    stop_signal = number;
+void on_signal(int /*number*/) {
+    lab::ask_to_stop();
 }
 
 /// A scene with the views that were asked for.
@@ -37,37 +35,6 @@ struct job {
     lab::scene world;
     std::vector<lab::camera_view> cameras;
     std::vector<lab::light_view> lights;
-};
-
-/// One line on stderr that is redrawn, if that is a terminal.
-class progress_bar {
-  public:
-    explicit progress_bar(std::size_t steps)
-        : steps_(std::max<std::size_t>(steps, 1)), visible_(::isatty(STDERR_FILENO) == 1) {}
-    ~progress_bar() {
-        if (visible_) {
-            std::fputs("\r\x1b[K", stderr);
-        }
-    }
-    progress_bar(const progress_bar&) = delete;
-    progress_bar& operator=(const progress_bar&) = delete;
-
-    void show(const std::string& doing) {
-        if (!visible_) {
-            return;
-        }
-        constexpr std::size_t width = 30;
-        const std::size_t full = width * std::min(done_, steps_) / steps_;
-        std::fprintf(stderr, "\r\x1b[K[%s%s] %zu/%zu %s", std::string(full, '#').c_str(),
-                     std::string(width - full, '.').c_str(), done_, steps_, doing.c_str());
-        std::fflush(stderr);
-    }
-    void advance() { ++done_; }
-
-  private:
-    std::size_t steps_;
-    std::size_t done_ = 0;
-    bool visible_;
 };
 
 void list_scenes(unsigned seed) {
@@ -98,6 +65,22 @@ std::vector<job> open_jobs(const lab::options& wanted) {
         jobs.push_back(std::move(next));
     }
     return jobs;
+}
+
+/// Refuses paths that cannot be gone and lists of methods that have nothing to go, before anything
+/// is rendered.
+void check_paths(const lab::options& wanted, const std::vector<job>& jobs) {
+    if (wanted.path.empty()) {
+        return;
+    }
+    for (const job& work : jobs) {
+        for (const lab::camera_view& camera : work.cameras) {
+            lab::camera_path(wanted.path, work.world, camera, wanted.frames);
+        }
+    }
+    if (wanted.methods == std::vector<std::string>{"raytraced"}) {
+        throw lab::bad_input("--path compares methods with the ray tracer: it cannot go alone");
+    }
 }
 
 /// Refuses sizes that this OpenGL cannot hold, before anything is rendered.
@@ -136,13 +119,10 @@ lab::method_result run_ray_tracer(const lab::ray_tracer& rays, const lab::scene&
         times.push_back(traced.ms);
         result.shadowed = std::move(traced.shadowed);
     }
-    std::sort(times.begin(), times.end());
-    const std::size_t middle = times.size() / 2;
-    const double median =
-        times.size() % 2 == 1 ? times[middle] : 0.5 * (times[middle - 1] + times[middle]);
+    const double median = lab::median(times);
     result.frame_ms_median = samples.draw_ms + median;
-    result.frame_ms_min = samples.draw_ms + times.front();
-    result.frame_ms_max = samples.draw_ms + times.back();
+    result.frame_ms_min = samples.draw_ms + *std::min_element(times.begin(), times.end());
+    result.frame_ms_max = samples.draw_ms + *std::max_element(times.begin(), times.end());
     result.frames = repeat;
     result.passes = {{"g-buffer", samples.draw_ms}, {"rays", median}};
     result.bytes = rays.bytes();
@@ -150,24 +130,11 @@ lab::method_result run_ray_tracer(const lab::ray_tracer& rays, const lab::scene&
     return result;
 }
 
-std::string file_name(std::initializer_list<std::string> parts) {
-    std::string name;
-    for (const std::string& part : parts) {
-        name += name.empty() ? "" : "-";
-        for (const char c : part) {
-            const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
-                               c == '-' || c == '_';
-            name += plain ? c : '_';
-        }
-    }
-    return name + ".png";
-}
-
 /// Runs everything on one view and keeps its pictures.
 class view_runner {
   public:
     view_runner(const lab::options& wanted, lab::results& all, lab::report_folder& folder,
-                progress_bar& progress)
+                lab::progress_bar& progress)
         : wanted_(wanted), all_(all), folder_(folder), progress_(progress) {}
 
     lab::view_pictures run(const job& work, lab::renderer& renderer, const lab::ray_tracer& rays,
@@ -181,9 +148,7 @@ class view_runner {
                 if ((traces && map != wanted_.maps.front()) || renderer.why_not(method, light)) {
                     continue;
                 }
-                if (stop_signal != 0) {
-                    throw std::runtime_error("interrupted");
-                }
+                lab::stop_if_asked();
                 progress_.show(work.world.name + " " + method +
                                (traces ? std::string() : std::string(" ") + std::to_string(map)));
                 lab::run_record record{work.world.name,  camera.label, light.label, method,
@@ -224,7 +189,7 @@ class view_runner {
         lab::view_pictures view{
             work.world.name,        camera.label, light.label, lab::camera_text(camera),
             lab::light_text(light), {},           {},          {}};
-        view.reference = write(file_name({work.world.name, c, l, "raytraced"}), reference);
+        view.reference = write(lab::picture_name({work.world.name, c, l, "raytraced"}), reference);
         view.reference_detail = lab::png_of(lab::cropped(reference, corner, window, zoom));
         for (std::size_t i = first; i < all_.runs.size(); ++i) {
             lab::run_record& run = all_.runs[i];
@@ -232,7 +197,7 @@ class view_runner {
             if (run.map != 0) {
                 const std::string map = std::string("m") + std::to_string(run.map);
                 const auto name = [&](const std::string& kind) {
-                    return file_name({work.world.name, c, l, map, run.method + kind});
+                    return lab::picture_name({work.world.name, c, l, map, run.method + kind});
                 };
                 const lab::picture plain = shader.shade(run.result.shadowed);
                 lab::picture marked = plain;
@@ -266,11 +231,12 @@ class view_runner {
     const lab::options& wanted_;
     lab::results& all_;
     lab::report_folder& folder_;
-    progress_bar& progress_;
+    lab::progress_bar& progress_;
 };
 
 void run_lab(const lab::options& wanted) {
     const std::vector<job> jobs = open_jobs(wanted);
+    check_paths(wanted, jobs);
     lab::report_folder folder(wanted.out);
     const gl::headless_context context;
     check_limits(wanted);
@@ -282,12 +248,14 @@ void run_lab(const lab::options& wanted) {
     all.view = wanted.view;
     std::size_t steps = 0;
     for (const job& work : jobs) {
-        steps +=
-            work.cameras.size() * work.lights.size() * wanted.methods.size() * wanted.maps.size();
+        steps += work.cameras.size() * work.lights.size() * wanted.methods.size() *
+                 wanted.maps.size() *
+                 (wanted.path.empty() ? 1 : static_cast<std::size_t>(wanted.frames));
     }
     std::vector<lab::view_pictures> views;
+    std::vector<lab::path_pictures> paths;
     {
-        progress_bar progress(steps);
+        lab::progress_bar progress(steps);
         for (const job& work : jobs) {
             progress.show(work.world.name);
             lab::renderer renderer(work.world, wanted.view);
@@ -302,13 +270,18 @@ void run_lab(const lab::options& wanted) {
             view_runner runner(wanted, all, folder, progress);
             for (const lab::camera_view& camera : work.cameras) {
                 for (const lab::light_view& light : work.lights) {
-                    views.push_back(runner.run(work, renderer, rays, camera, light));
+                    if (wanted.path.empty()) {
+                        views.push_back(runner.run(work, renderer, rays, camera, light));
+                    } else {
+                        paths.push_back(lab::run_path(wanted, work.world, renderer, rays, camera,
+                                                      light, all, folder, progress));
+                    }
                 }
             }
         }
         progress.show("report");
         folder.write("results.json", lab::json_of(all));
-        folder.write("report.html", lab::html_of(all, views));
+        folder.write("report.html", lab::html_of(all, views, paths));
     }
     const std::filesystem::path place = folder.publish();
     std::fputs(lab::table_of(all).c_str(), stdout);

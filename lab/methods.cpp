@@ -1,22 +1,14 @@
 #include "lab/methods.hpp"
 
-#include "gl/mesh.hpp"
-#include "gl/objects.hpp"
-#include "gl/timer.hpp"
-#include "lab/shaders.hpp"
+#include "lab/light_picture.hpp"
+#include "lab/passes.hpp"
+#include "lab/statistics.hpp"
 #include "lab/warp_pictures.hpp"
-
-#include <warpshadow/fit.hpp>
-#include <warpshadow/smoothing.hpp>
-#include <warpshadow/warp_build.hpp>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <map>
 
 namespace lab {
 
@@ -24,87 +16,52 @@ namespace ws = warpshadow;
 
 namespace {
 
-constexpr std::array<std::string_view, 5> names{"sm", "dv", "notw", "notw-nodv", "raytraced"};
-
-/// When the shadow pass cuts an edge: always above this share of the map (the finest of Rosen
-/// 2012), never below so many texels, and in between when the warp bends it by more than the last.
-constexpr double always_cut_share = 0.01;
-constexpr double never_cut_texels = 0.5;
-constexpr double bend_texels = 1.0;
-
-/// Mirror of `light_buffer` in shaders/light.glsl.
-struct light_block {
-    glm::mat4 full{1.0f};
-    glm::mat4 matrix{1.0f};
-    glm::mat4 normal{1.0f};
-    glm::vec4 position{0.0f};
-    glm::vec4 axis{0.0f};
-    glm::vec4 rect{0.0f, 0.0f, 1.0f, 1.0f};
+/// Which matrices a method starts from.
+enum class map_base {
+    whole_scene, ///< all that the light reaches
+    stable,      ///< the ball around the view, on a fixed grid
+    minimal      ///< what the camera can see
 };
 
-/// Mirror of `triangle_counts` in shaders/triangles.glsl.
-struct triangle_counts {
-    std::uint32_t vertex_count = 0;
-    std::uint32_t instance_count = 1;
-    std::uint32_t first_vertex = 0;
-    std::uint32_t base_instance = 0;
-    std::array<std::uint32_t, 2> waiting{};
-    std::uint32_t lost = 0;
-    std::uint32_t crowded = 0;
-    std::uint32_t uncut = 0;
-    std::uint32_t padding = 0;
-};
-constexpr std::size_t map_triangle_bytes = 48;
-
-/// Texture units and buffer bindings that several shaders share.
-enum unit : GLuint {
-    unit_position = 0,
-    unit_normal = 1,
-    unit_rows = 2,
-    unit_columns = 3,
-    unit_centres = 4,
-    unit_map = 5
-};
-enum binding : GLuint {
-    on_light = 4,
-    on_desired_view = 5,
-    on_counts = 6,
-    on_ready = 7,
-    on_waiting = 8,
-    on_next = 9
+/// A method as the steps that it takes.
+struct method {
+    std::string_view name;
+    map_base base;
+    bool desired_view; ///< crop to the lit view samples
+    bool warp;         ///< tables, and triangles cut for them
 };
 
-/// Which of the steps before the shadow pass a method takes.
-struct method_steps {
-    bool desired_view;
-    bool warp;
+constexpr std::array methods{
+    method{"sm", map_base::whole_scene, false, false},
+    method{"stable", map_base::stable, false, false},
+    method{"min-sm", map_base::minimal, false, false},
+    method{"dv", map_base::whole_scene, true, false},
+    method{"min-sm-notw", map_base::minimal, false, true},
+    method{"notw", map_base::whole_scene, true, true},
+    method{"notw-nodv", map_base::whole_scene, false, true},
 };
 
-method_steps steps_of(std::string_view method) {
-    if (method == "sm") {
-        return {false, false};
+constexpr auto names = [] {
+    std::array<std::string_view, methods.size() + 1> result;
+    std::transform(methods.begin(), methods.end(), result.begin(),
+                   [](const method& each) { return each.name; });
+    result.back() = "raytraced";
+    return result;
+}();
+
+const method& find_method(std::string_view name) {
+    const auto* const found = std::find_if(methods.begin(), methods.end(),
+                                           [&](const method& each) { return each.name == name; });
+    if (found == methods.end()) {
+        throw bad_input("no such method: " + std::string(name));
     }
-    if (method == "dv") {
-        return {true, false};
-    }
-    if (method == "notw") {
-        return {true, true};
-    }
-    if (method == "notw-nodv") {
-        return {false, true};
-    }
-    throw bad_input("no such method: " + std::string(method));
+    return *found;
 }
 
-double farthest_along(const ws::box3<double>& box, glm::dvec3 from, glm::dvec3 axis) {
-    double farthest = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x,
-                                (i & 2) != 0 ? box.hi.y : box.lo.y,
-                                (i & 4) != 0 ? box.hi.z : box.lo.z);
-        farthest = std::max(farthest, glm::dot(corner - from, axis));
-    }
-    return farthest;
+/// Whether the maps of a method are fitted to the view: a point light then has maps for what is
+/// seen of its cube.
+bool follows_the_view(const method& how) {
+    return how.base != map_base::whole_scene || how.desired_view;
 }
 
 /// Cosine between normal and light, or 0 outside a spot light's cone; as lit_cosine in GLSL.
@@ -119,58 +76,9 @@ double lit_cosine(const ws::light<double>& light, glm::dvec3 world, glm::dvec3 n
     return in_cone ? glm::dot(normal, l) : 0.0;
 }
 
-light_block make_light_block(const scene& world, const light_view& view) {
-    const ws::light<double>& light = view.light;
-    light_block block;
-    ws::light_matrix_result<double> built;
-    if (light.kind == ws::light_kind::directional) {
-        built = ws::directional_light_matrix(light, world.box, ws::clip::opengl);
-        block.position = glm::vec4(glm::vec3(-glm::normalize(light.direction)), 0.0f);
-        block.axis = glm::vec4(0.0f, 0.0f, 0.0f, -2.0f);
-    } else {
-        const glm::dvec3 axis = glm::normalize(light.direction);
-        const double far_distance = farthest_along(world.box, light.position, axis);
-        built =
-            ws::spot_light_matrix(light, far_distance * 0x1p-10, far_distance, ws::clip::opengl);
-        block.position = glm::vec4(glm::vec3(light.position), 1.0f);
-        block.axis =
-            glm::vec4(glm::vec3(axis), static_cast<float>(std::cos(0.5 * light.cone_angle)));
-    }
-    if (ws::any(built.flags, ws::status::invalid_input | ws::status::out_of_range)) {
-        throw bad_input("the light " + view.label + " does not reach the scene " + world.name);
-    }
-    block.full = glm::mat4(built.matrix);
-    block.matrix = block.full;
-    block.normal = glm::mat4(glm::transpose(glm::inverse(built.matrix)));
-    return block;
-}
-
-glm::mat4 make_camera_matrix(const scene& world, const camera_view& camera, glm::ivec2 view) {
-    const double aspect = static_cast<double>(view.x) / view.y;
-    const double far_distance =
-        1.01 *
-        std::max(farthest_along(world.box, camera.eye, glm::normalize(camera.target - camera.eye)),
-                 1e-3);
-    const ws::view_volume<double> volume =
-        ws::perspective_volume(camera.fov_y, aspect, far_distance * 0x1p-13, far_distance);
-    const ws::frustum<double> frustum =
-        ws::make_frustum(camera.eye, camera.target - camera.eye, glm::dvec3(0.0, 1.0, 0.0), volume)
-            .value;
-    return glm::mat4(ws::projection_matrix(volume, ws::clip::opengl) *
-                     ws::view_matrix(frustum, ws::clip::opengl));
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) {
-        return 0.0;
-    }
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-void wait_for_writes() {
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+int used_maps(const light_maps& chosen) {
+    return static_cast<int>(std::count_if(chosen.maps.begin(), chosen.maps.end(),
+                                          [](const light_map& each) { return each.used; }));
 }
 
 } // namespace
@@ -180,309 +88,119 @@ std::span<const std::string_view> method_names() {
 }
 
 struct renderer::state {
-    /// Textures and lists whose size follows the shadow map.
-    struct map_resources {
-        explicit map_resources(int size)
-            : depth(GL_DEPTH_COMPONENT32F, size, size), target({}, &depth),
-              counts(GL_R32UI, size, size), rows(GL_R32F, size + 1, size),
-              columns(GL_R32F, size + 1, size), centres(GL_RG32F, size, size) {}
-        gl::texture depth;
-        gl::framebuffer target;
-        gl::texture counts, rows, columns, centres;
-    };
+    state(const scene& world, glm::ivec2 view) : gpu(world, view), seen(view), seen_before(view) {}
 
-    state(const scene& scene_to_show, glm::ivec2 view_size)
-        : world(scene_to_show), view(view_size), library{gl::glsl_files(), lab_shaders()},
-          mesh(world.positions, world.triangles),
-          normals(std::span<const glm::vec4>(face_normals())),
-          g_position(GL_RGBA32F, view.x, view.y), g_normal(GL_RGBA32F, view.x, view.y),
-          g_depth(GL_DEPTH_COMPONENT32F, view.x, view.y),
-          g_target({&g_position, &g_normal}, &g_depth), mask(GL_R8UI, view.x, view.y),
-          light_buffer(sizeof(light_block), nullptr, GL_DYNAMIC_DRAW),
-          desired(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW),
-          counters(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW), watch(gl::best_timing()) {
-        draw_g_buffer = link("g_buffer.vert", "g_buffer.frag");
-        draw_plain = link("shadow_plain.vert", "empty.frag");
-        draw_warped = link("shadow_warped.vert", "shadow_warped.frag");
-        find_desired_view = compute("desired_view.comp");
-        crop = compute("crop.comp");
-        splat_rows = compute("splat_rows.comp");
-        splat_columns = compute("splat_columns.comp");
-        sum_columns = compute("column_sums.comp");
-        build_axis = compute("build_axis.comp");
-        unwarp_centres = compute("unwarp_centres.comp");
-        set_up_triangles = compute("triangle_setup.comp");
-        cut_triangles = compute("triangle_cut.comp");
-        test_plain = compute("shadow_test.comp");
-        test_warped = compute("shadow_test.comp", {"WARPED"});
-        for (const gl::program* program :
-             {&find_desired_view, &splat_rows, &splat_columns, &test_plain, &test_warped}) {
-            program->set("g_position", static_cast<int>(unit_position));
-            program->set("g_normal", static_cast<int>(unit_normal));
-            program->set("shadow_map", static_cast<int>(unit_map));
+    light_maps choose_maps(const method& how, const view_request& request,
+                           light_memory& memory) const {
+        const scene& world = gpu.world();
+        if (how.base == map_base::whole_scene) {
+            return whole_scene_maps(world, request.light);
         }
-        set_capacity(2 * world.triangles.size() + 65536, 65536);
+        const ws::frustum<double> camera = camera_frustum(world, request.camera, gpu.view());
+        return how.base == map_base::stable
+                   ? stable_maps(world, camera, request.light, request.map_size)
+                   : minimal_maps(world, camera, request.light, request.map_size, memory);
     }
 
-    std::vector<glm::vec4> face_normals() const {
-        std::vector<glm::vec4> result;
-        result.reserve(world.triangles.size());
-        for (const glm::uvec3& t : world.triangles) {
-            const glm::dvec3 a(world.positions[t.x]);
-            const glm::dvec3 n = glm::cross(glm::dvec3(world.positions[t.y]) - a,
-                                            glm::dvec3(world.positions[t.z]) - a);
-            const double length = glm::length(n);
-            // a triangle without area is never drawn; any direction will do
-            result.emplace_back(length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f, 1.0f, 0.0f),
-                                0.0f);
-        }
-        return result;
-    }
-
-    gl::program link(const char* vertex, const char* fragment) const {
-        return gl::program({{GL_VERTEX_SHADER, library.load(std::string("lab/") + vertex)},
-                            {GL_FRAGMENT_SHADER, library.load(std::string("lab/") + fragment)}});
-    }
-
-    gl::program compute(const char* file, std::vector<std::string> defines = {}) const {
-        return gl::program::compute(library.load(std::string("lab/") + file, defines));
-    }
-
-    void set_capacity(std::size_t ready_count, std::size_t waiting_count) {
-        ready = gl::buffer(ready_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
-        for (gl::buffer& list : waiting) {
-            list = gl::buffer(waiting_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
-        }
-    }
-
-    /// Runs one step, timed if the frame asks for it.
-    template <typename Step> void pass(const char* name, Step step) {
-        if (pass_times == nullptr) {
-            step();
-            return;
-        }
-        watch.start();
-        step();
-        (*pass_times)[name].push_back(watch.stop());
-        if (std::find(pass_order.begin(), pass_order.end(), name) == pass_order.end()) {
-            pass_order.emplace_back(name);
-        }
-    }
-
-    void draw_view(const glm::mat4& camera, glm::vec3 eye) {
-        g_target.bind();
-        glEnable(GL_DEPTH_TEST);
-        glDepthFunc(GL_LESS);
-        glDisable(GL_CULL_FACE);
-        glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
-        glClearDepth(1.0);
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        draw_g_buffer.use();
-        draw_g_buffer.set("camera", camera);
-        draw_g_buffer.set("eye", eye);
-        normals.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-        mesh.draw();
-    }
-
-    void bind_view_samples() {
-        g_position.bind(unit_position);
-        g_normal.bind(unit_normal);
-        light_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, on_light);
-    }
-
-    void focus_on_desired_view(int map_size) {
-        const std::uint32_t infinity =
-            std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
-        const std::array<std::uint32_t, 4> empty{infinity, infinity, 0u, 0u};
-        desired.write(0, sizeof empty, empty.data());
-        desired.bind_base(GL_SHADER_STORAGE_BUFFER, on_desired_view);
-        find_desired_view.dispatch((view.x + 3) / 4, (view.y + 3) / 4);
-        wait_for_writes();
-        crop.set("margin", 0.5f / static_cast<float>(std::max(map_size - 1, 1)));
-        crop.dispatch(1);
-        wait_for_writes();
-    }
-
-    /// Importance to functions of one axis.
-    void build(map_resources& map, const gl::program& splat, const gl::texture& table,
-               const char* splat_name, const char* build_name) {
-        pass(splat_name, [&] {
-            map.counts.clear(glm::uvec4(0u));
-            map.counts.bind_image(0, GL_READ_WRITE);
-            splat.dispatch(view.x, view.y);
-            wait_for_writes();
-        });
-        if (keep_counts) {
-            (&table == &map.rows ? first_counts : second_counts) = map.counts.read<std::uint32_t>();
-        }
-        pass(build_name, [&] {
-            const int size = map.counts.width();
-            map.counts.bind_image(0, GL_READ_WRITE);
-            sum_columns.dispatch(size);
-            wait_for_writes();
-            table.bind_image(1, GL_WRITE_ONLY);
-            const ws::build_options<float> options;
-            build_axis.set("ws_radius", ws::window_radius(options.window, size));
-            // the device computes nodes in float: four times the floor that rounding once needs
-            build_axis.set("ws_floor",
-                           std::max(options.floor, 4.0f * ws::smallest_floor<float, float>(size)));
-            build_axis.use();
-            glDispatchCompute(static_cast<GLuint>(size), 1, 1);
-            wait_for_writes();
-        });
-    }
-
-    void build_tables(map_resources& map) {
-        build(map, splat_rows, map.rows, "splat rows", "build rows");
-        map.rows.bind(unit_rows);
-        build(map, splat_columns, map.columns, "splat columns", "build columns");
-        map.columns.bind(unit_columns);
-        pass("unwarp centres", [&] {
-            map.centres.bind_image(0, GL_WRITE_ONLY);
-            unwarp_centres.dispatch(map.centres.width(), map.centres.height());
-            wait_for_writes();
-            map.centres.bind(unit_centres);
-        });
-    }
-
-    void draw_plain_map(map_resources& map) {
-        map.target.bind();
-        glClear(GL_DEPTH_BUFFER_BIT);
-        draw_plain.use();
-        mesh.draw();
-    }
-
-    void draw_warped_map(map_resources& map) {
-        const double size = map.depth.width();
-        const double shortest = never_cut_texels / size;
-        for (const gl::program* program : {&set_up_triangles, &cut_triangles}) {
-            program->set("longest", static_cast<float>(always_cut_share));
-            program->set("shortest", static_cast<float>(shortest));
-            program->set("deviation", static_cast<float>(bend_texels / size));
-        }
-        pass("cut triangles", [&] {
-            const triangle_counts none;
-            counters.write(0, sizeof none, &none);
-            mesh.positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-            mesh.indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
-            normals.bind_base(GL_SHADER_STORAGE_BUFFER, 2);
-            counters.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
-            ready.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
-            waiting[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
-            const int triangles = static_cast<int>(world.triangles.size());
-            set_up_triangles.set("triangle_count", triangles);
-            set_up_triangles.dispatch(triangles);
-            wait_for_writes();
-            // three halvings, one of each edge, make a triangle half as large; no edge is longer
-            // than the map's diagonal at first
-            const int rounds =
-                3 * static_cast<int>(std::ceil(std::log2(std::sqrt(2.0) / shortest))) + 1;
-            for (int round = 0; round < rounds; ++round) {
-                const std::size_t source = static_cast<std::size_t>(round % 2);
-                const std::uint32_t zero = 0;
-                counters.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
-                               sizeof zero, &zero);
-                waiting[source].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
-                waiting[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
-                cut_triangles.set("list", static_cast<int>(source));
-                cut_triangles.set("last_round", static_cast<int>(round + 1 == rounds));
-                cut_triangles.dispatch(64 * 64);
-                wait_for_writes();
+    /// One frame from the G-buffer to the shadow test.
+    light_maps frame(const method& how, const view_request& request, light_memory& memory,
+                     map_resources& maps, bool count) {
+        const glm::mat4 camera =
+            camera_matrix(camera_frustum(gpu.world(), request.camera, gpu.view()));
+        light_maps chosen = choose_maps(how, request, memory);
+        gpu.timed_pass("g-buffer",
+                       [&] { gpu.draw_view(seen, camera, glm::vec3(request.camera.eye)); });
+        gpu.use(seen, chosen, request.light.light);
+        for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
+            if (!chosen.maps[i].used) {
+                continue;
             }
-        });
-        pass("shadow map", [&] {
-            map.target.bind();
-            glClear(GL_DEPTH_BUFFER_BIT);
-            draw_warped.use();
-            ready.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
-            nothing.bind();
-            counters.bind(GL_DRAW_INDIRECT_BUFFER);
-            glDrawArraysIndirect(GL_TRIANGLES, nullptr);
-            wait_for_writes();
-        });
-    }
-
-    void test_shadows(map_resources& map, bool warped) {
-        map.depth.bind(unit_map);
-        mask.bind_image(0, GL_WRITE_ONLY);
-        (warped ? test_warped : test_plain).dispatch(view.x, view.y);
-        wait_for_writes();
-    }
-
-    void frame(const method_steps& steps, const view_request& request, const light_block& light,
-               const glm::mat4& camera, map_resources& map) {
-        pass("g-buffer", [&] { draw_view(camera, glm::vec3(request.camera.eye)); });
-        light_buffer.write(0, sizeof light, &light);
-        bind_view_samples();
-        if (steps.desired_view) {
-            pass("desired view", [&] { focus_on_desired_view(request.map_size); });
+            if (how.desired_view) {
+                gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
+            }
+            if (how.warp) {
+                gpu.build_tables(maps, i, count);
+                gpu.draw_warped_map(maps, i, count);
+            } else {
+                gpu.timed_pass("shadow map", [&] { gpu.draw_plain_map(maps, i); });
+            }
         }
-        if (steps.warp) {
-            build_tables(map);
-            draw_warped_map(map);
-        } else {
-            pass("shadow map", [&] { draw_plain_map(map); });
-        }
-        pass("shadow test", [&] { test_shadows(map, steps.warp); });
+        gpu.timed_pass("shadow test", [&] { gpu.test_shadows(maps, chosen, how.warp); });
+        return chosen;
     }
 
-    [[nodiscard]] std::vector<std::string> guards(const method_steps& steps) const {
+    /// Guards of all steps of the last frame.
+    std::vector<std::string> guards(const method& how, const light_maps& chosen,
+                                    const map_resources& maps) const {
+        ws::status flags = chosen.flags;
+        for (std::size_t i = 0; how.desired_view && i < chosen.maps.size(); ++i) {
+            const std::vector<std::uint32_t> bits = maps.desired[i].read<std::uint32_t>();
+            if (chosen.maps[i].used && bits[0] > bits[2]) {
+                flags |= ws::status::empty_importance;
+            }
+        }
+        for (const triangle_counts& each : gpu.counted()) {
+            flags |= each.lost > 0 ? ws::status::capacity_reached : ws::status::ok;
+            flags |= each.uncut > 0 ? ws::status::bound_missed : ws::status::ok;
+        }
         std::vector<std::string> result;
-        if (steps.desired_view) {
-            const std::vector<std::uint32_t> bits = desired.read<std::uint32_t>();
-            if (bits[0] > bits[2]) {
-                result.emplace_back(ws::status_name(ws::status::empty_importance));
-            }
-        }
-        if (steps.warp) {
-            const triangle_counts counted = counters.read<triangle_counts>().front();
-            if (counted.lost > 0) {
-                result.emplace_back(ws::status_name(ws::status::capacity_reached));
-            }
-            if (counted.uncut > 0) {
-                result.emplace_back(ws::status_name(ws::status::bound_missed));
+        for (unsigned bit = 0; bit < 32; ++bit) {
+            const auto one = static_cast<ws::status>(1u << bit);
+            if (ws::any(flags, one)) {
+                result.emplace_back(ws::status_name(one));
             }
         }
         return result;
     }
 
-    /// Makes the triangle lists large enough for what the last frame needed; false if they were.
-    bool grow_lists() {
-        const triangle_counts counted = counters.read<triangle_counts>().front();
-        const std::size_t ready_count = ready.bytes() / map_triangle_bytes;
-        const std::size_t waiting_count = waiting[0].bytes() / map_triangle_bytes;
-        if ((counted.lost == 0 && counted.crowded == 0) || ready_count > most_triangles ||
-            waiting_count > most_triangles) {
-            return false;
+    std::vector<named_picture> pictures(const method& how, const view_request& request,
+                                        const light_maps& chosen, const map_resources& maps) {
+        std::vector<named_picture> result;
+        const bool single = chosen.maps.size() == 1;
+        const std::vector<float> depths = maps.depth.read<float>();
+        const std::size_t texels =
+            static_cast<std::size_t>(maps.size) * static_cast<std::size_t>(maps.size);
+        std::vector<glm::mat4> in_use;
+        for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
+            in_use.push_back(gpu.matrix_in_use(i));
         }
-        set_capacity(counted.lost > 0 ? 2 * ready_count : ready_count,
-                     counted.crowded > 0 ? 2 * waiting_count : waiting_count);
-        return true;
+        for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
+            if (!chosen.maps[i].used) {
+                continue;
+            }
+            const std::string suffix = single ? "" : "-" + std::to_string(i);
+            if (how.warp) {
+                const map_resources::tables& warp = maps.warps[i];
+                for (named_picture& each :
+                     warp_pictures({maps.size, warp.rows.read<float>(), warp.columns.read<float>(),
+                                    warp.first_counts, warp.second_counts})) {
+                    each.name += suffix;
+                    result.push_back(std::move(each));
+                }
+            }
+            result.push_back(depth_picture(std::span(depths).subspan(i * texels, texels), maps.size,
+                                           "shadow-map" + suffix));
+        }
+        if (single && follows_the_view(how)) {
+            const scene& world = gpu.world();
+            constexpr int size = 512;
+            const glm::dmat4 whole =
+                enclosing(whole_scene_maps(world, request.light).maps.front().matrix,
+                          glm::dmat4(in_use.front()));
+            const std::vector<float> depth = gpu.draw_depths(whole, size);
+            const ws::focus_result focus = focus_on(
+                world, camera_frustum(world, request.camera, gpu.view()), request.light.light);
+            result.push_back(
+                light_picture({whole, depth, size}, glm::dmat4(in_use.front()), focus));
+        }
+        return result;
     }
 
-    static constexpr std::size_t most_triangles = std::size_t{1} << 22;
-
-    const scene& world;
-    glm::ivec2 view;
-    gl::shader_library library;
-    gl::mesh mesh;
-    gl::buffer normals;
-    gl::texture g_position, g_normal, g_depth;
-    gl::framebuffer g_target;
-    gl::texture mask;
-    gl::buffer light_buffer, desired, counters;
-    gl::buffer ready;
-    std::array<gl::buffer, 2> waiting;
-    gl::vertex_array nothing;
-    gl::program draw_g_buffer, draw_plain, draw_warped;
-    gl::program find_desired_view, crop, splat_rows, splat_columns, sum_columns, build_axis,
-        unwarp_centres;
-    gl::program set_up_triangles, cut_triangles, test_plain, test_warped;
-    gl::stopwatch watch;
-    std::map<std::string, std::vector<double>>* pass_times = nullptr;
-    std::vector<std::string> pass_order;
-    bool keep_counts = false;
-    std::vector<std::uint32_t> first_counts, second_counts;
+    passes gpu;
+    g_buffer seen, seen_before;
+    bool remembers = false;
+    // kept while a camera moves, so that frames do not begin with allocations
+    std::map<std::string, map_resources, std::less<>> moving_maps;
 };
 
 renderer::renderer(const scene& world, glm::ivec2 view)
@@ -492,15 +210,15 @@ renderer::~renderer() = default;
 
 g_buffer_samples renderer::samples(const camera_view& camera, const light_view& light) {
     state& s = *state_;
-    const glm::mat4 matrix = make_camera_matrix(s.world, camera, s.view);
-    s.draw_view(matrix, glm::vec3(camera.eye)); // warms up
-    s.watch.start();
-    s.draw_view(matrix, glm::vec3(camera.eye));
+    const glm::mat4 matrix = camera_matrix(camera_frustum(s.gpu.world(), camera, s.gpu.view()));
+    s.gpu.draw_view(s.seen, matrix, glm::vec3(camera.eye)); // warms up
+    s.gpu.watch().start();
+    s.gpu.draw_view(s.seen, matrix, glm::vec3(camera.eye));
     g_buffer_samples result;
-    result.draw_ms = s.watch.stop();
-    result.size = s.view;
-    result.position = s.g_position.read<glm::vec4>();
-    for (const glm::vec4& n : s.g_normal.read<glm::vec4>()) {
+    result.draw_ms = s.gpu.watch().stop();
+    result.size = s.gpu.view();
+    result.position = s.seen.position.read<glm::vec4>();
+    for (const glm::vec4& n : s.seen.normal.read<glm::vec4>()) {
         result.normal.emplace_back(n);
     }
     result.n_dot_l.resize(result.position.size(), 0.0f);
@@ -513,74 +231,135 @@ g_buffer_samples renderer::samples(const camera_view& camera, const light_view& 
     return result;
 }
 
-std::optional<std::string> renderer::why_not(std::string_view method,
-                                             const light_view& light) const {
-    if (method != "raytraced" && light.light.kind == ws::light_kind::point) {
+std::optional<std::string> renderer::why_not(std::string_view name, const light_view& light) const {
+    if (name == "raytraced") {
+        return std::nullopt;
+    }
+    const method& how = find_method(name);
+    if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
+        return "a texel of a fixed size has no meaning for a light with a position";
+    }
+    if (light.light.kind == ws::light_kind::point && !follows_the_view(how)) {
         return "a point light shines all around and has no single map";
     }
     return std::nullopt;
 }
 
-method_result renderer::run(std::string_view method, const view_request& request) {
+method_result renderer::run(std::string_view name, const view_request& request) {
     state& s = *state_;
-    const method_steps steps = steps_of(method);
-    method_result result;
+    const method& how = find_method(name);
+    method_result result{};
 
-    const auto begin = std::chrono::steady_clock::now();
-    const light_block light = make_light_block(s.world, request.light);
-    const std::chrono::duration<double, std::micro> set_up =
-        std::chrono::steady_clock::now() - begin;
-    result.cpu_setup_us.emplace_back("light matrix", set_up.count());
+    constexpr int set_ups = 31;
+    std::vector<double> set_up_us;
+    for (int i = 0; i < set_ups; ++i) {
+        light_memory memory;
+        const auto begin = std::chrono::steady_clock::now();
+        const light_maps chosen = s.choose_maps(how, request, memory);
+        const std::chrono::duration<double, std::micro> elapsed =
+            std::chrono::steady_clock::now() - begin;
+        set_up_us.push_back(elapsed.count());
+    }
+    result.cpu_setup_us.emplace_back("light matrix", median(set_up_us));
 
-    const glm::mat4 camera = make_camera_matrix(s.world, request.camera, s.view);
-    state::map_resources map(request.map_size);
-    const auto frame = [&] { s.frame(steps, request, light, camera, map); };
+    light_memory memory;
+    light_maps chosen = s.choose_maps(how, request, memory);
+    map_resources maps(request.map_size, chosen.maps.size(), how.warp);
+    const auto frame = [&](bool count) {
+        light_memory fresh;
+        chosen = s.frame(how, request, fresh, maps, count);
+    };
 
     // the first frame warms up and, with tables, finds how long the lists must be
-    s.keep_counts = steps.warp;
     do {
-        frame();
-    } while (steps.warp && s.grow_lists());
-    s.keep_counts = false;
+        s.gpu.forget_counts();
+        frame(true);
+    } while (how.warp && s.gpu.grow_lists());
     glFinish();
 
     std::vector<double> frames;
     for (int i = 0; i < request.repeat; ++i) {
-        s.watch.start();
-        frame();
-        frames.push_back(s.watch.stop());
+        s.gpu.watch().start();
+        frame(false);
+        frames.push_back(s.gpu.watch().stop());
     }
     std::map<std::string, std::vector<double>> times;
-    s.pass_times = &times;
-    s.pass_order.clear();
+    s.gpu.time_into(&times);
     for (int i = 0; i < std::min(request.repeat, 3); ++i) {
-        frame();
+        frame(false);
+        s.gpu.begin_frame();
     }
-    s.pass_times = nullptr;
+    s.gpu.time_into(nullptr);
     gl::check("shadow methods");
 
     result.frame_ms_median = median(frames);
     result.frame_ms_min = frames.empty() ? 0.0 : *std::min_element(frames.begin(), frames.end());
     result.frame_ms_max = frames.empty() ? 0.0 : *std::max_element(frames.begin(), frames.end());
     result.frames = static_cast<int>(frames.size());
-    for (const std::string& name : s.pass_order) {
-        result.passes.push_back({name, median(times[name])});
+    for (const std::string& pass : s.gpu.timed()) {
+        result.passes.push_back({pass, median(times[pass])});
     }
-    result.shadowed = s.mask.read<std::uint8_t>();
-    result.bytes = map.depth.bytes();
-    result.triangles = s.world.triangles.size();
-    result.status = s.guards(steps);
-    if (steps.warp) {
-        result.bytes += map.counts.bytes() + map.rows.bytes() + map.columns.bytes() +
-                        map.centres.bytes() + s.ready.bytes() + s.waiting[0].bytes() +
-                        s.waiting[1].bytes();
-        result.triangles = s.counters.read<triangle_counts>().front().vertex_count / 3;
-        const warp_readback tables{request.map_size, map.rows.read<float>(),
-                                   map.columns.read<float>(), s.first_counts, s.second_counts};
-        result.pictures = warp_pictures(tables);
+    result.shadowed = s.gpu.shadowed();
+    result.bytes = maps.bytes() + (how.warp ? s.gpu.list_bytes() : 0);
+    result.maps = used_maps(chosen);
+    result.angle = chosen.angle;
+    result.triangles = s.gpu.world().triangles.size() * static_cast<std::size_t>(result.maps);
+    if (how.warp) {
+        result.triangles = 0;
+        for (const triangle_counts& each : s.gpu.counted()) {
+            result.triangles += each.vertex_count / 3;
+        }
     }
-    result.pictures.push_back(depth_picture(map.depth.read<float>(), request.map_size));
+    result.status = s.guards(how, chosen, maps);
+    result.pictures = s.pictures(how, request, chosen, maps);
     return result;
+}
+
+moving_frame renderer::next_frame(std::string_view name, const view_request& request,
+                                  method_memory& memory) {
+    state& s = *state_;
+    const method& how = find_method(name);
+    const std::string key = std::string(name) + " " + std::to_string(request.map_size);
+    auto found = s.moving_maps.find(key);
+    if (found == s.moving_maps.end()) {
+        light_memory unused;
+        const std::size_t count = s.choose_maps(how, request, unused).maps.size();
+        found = s.moving_maps.try_emplace(key, request.map_size, count, how.warp).first;
+        light_memory copy = memory.light;
+        s.frame(how, request, copy, found->second, false); // warms up
+    }
+    map_resources& maps = found->second;
+    const light_memory before = memory.light;
+    moving_frame result{};
+    light_maps chosen;
+    do {
+        memory.light = before;
+        s.gpu.forget_counts();
+        s.gpu.watch().start();
+        chosen = s.frame(how, request, memory.light, maps, true);
+        result.frame_ms = s.gpu.watch().stop();
+    } while (how.warp && s.gpu.grow_lists());
+    result.shadowed = s.gpu.shadowed();
+    result.maps = used_maps(chosen);
+    result.angle = chosen.angle;
+    if (s.remembers) {
+        s.gpu.use(s.seen_before);
+        s.gpu.test_shadows(maps, chosen, how.warp);
+        result.shadowed_before = s.gpu.shadowed();
+    }
+    return result;
+}
+
+void renderer::remember_view(const std::optional<camera_view>& camera) {
+    state& s = *state_;
+    s.remembers = camera.has_value();
+    if (!camera) {
+        s.moving_maps.clear(); // another light may have another number of maps
+    } else {
+        s.gpu.draw_view(s.seen_before,
+                        camera_matrix(camera_frustum(s.gpu.world(), *camera, s.gpu.view())),
+                        glm::vec3(camera->eye));
+    }
 }
 
 } // namespace lab

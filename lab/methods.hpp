@@ -1,6 +1,7 @@
 // Shadow methods on the GPU, as the lab runs and measures them.
 #pragma once
 
+#include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
 
 #include <glm/glm.hpp>
@@ -59,9 +60,26 @@ struct method_result {
     std::vector<pass_time> passes;
     std::vector<std::pair<std::string, double>> cpu_setup_us;
     std::size_t bytes;     ///< of GPU memory that the method needs beyond mesh and G-buffer
-    std::size_t triangles; ///< rasterised into the shadow map
+    std::size_t triangles; ///< rasterised into the shadow maps
+    int maps;              ///< shadow maps drawn
+    double angle;          ///< of the map's sides to the axes of the light, radians
     std::vector<std::string> status; ///< names of the guards that fired
     std::vector<named_picture> pictures;
+};
+
+/// One frame of a moving camera.
+struct moving_frame {
+    std::vector<std::uint8_t> shadowed; ///< per view sample, as in `method_result`
+    /// The answers of this frame's maps to the samples of the frame before; empty in the first.
+    std::vector<std::uint8_t> shadowed_before;
+    double frame_ms; ///< one frame, without warm-up
+    int maps;
+    double angle;
+};
+
+/// What a method keeps while a camera moves.
+struct method_memory {
+    light_memory light;
 };
 
 /// Holds one scene on the GPU and renders its G-buffer and shadows.
@@ -81,12 +99,20 @@ class renderer {
     /// Runs a method other than "raytraced", which needs no GPU.
     method_result run(std::string_view method, const view_request& request);
 
+    /// The next frame of a camera that moves; `repeat` does not count. The samples of the frame
+    /// before are those of the last `remember_view`.
+    moving_frame next_frame(std::string_view method, const view_request& request,
+                            method_memory& memory);
+
+    /// Keeps the view of a camera as the frame before the next; nothing: there was none.
+    void remember_view(const std::optional<camera_view>& camera);
+
   private:
     struct state;
     std::unique_ptr<state> state_;
 };
 
-/// sm, dv, notw, notw-nodv, raytraced.
+/// All methods, the ray tracer last.
 std::span<const std::string_view> method_names();
 
 } // namespace lab

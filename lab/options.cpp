@@ -18,10 +18,19 @@ constexpr const char* examples = R"(Cameras and lights:
   --light spot:x,y,z,tx,ty,tz,angle   position, target, full cone angle in degrees
   --light point:x,y,z                 position
 
+Paths (--path), all with nothing but the camera in motion:
+  yaw       turns on the spot, 0.1 degrees a frame
+  forward   moves towards its target, a thousandth of the distance a frame
+  strafe    moves to its right, a thousandth of the distance a frame
+  orbit     turns around its target, 0.1 degrees a frame
+  walk      moves through the scene's cameras in turn
+  FILE      moves through the cameras of a file, one a line as for --camera
+
 Examples:
   warpshadow-lab
   warpshadow-lab --scene leaves,colonnade --map 256,512,1024 --out report
   warpshadow-lab --scene house.glb --camera=-2.6,1.5,1.6,2.5,0.3,-1.5,65 --light sun:0.3,-1,0.2
+  warpshadow-lab --scene outdoor --path yaw --frames 120 --methods sm,min-sm,dv
   warpshadow-lab --scene outdoor --camera 0 --camera 2 --methods sm,notw --view 1920x1080
 )";
 
@@ -142,6 +151,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     std::string view;
     std::string repeat;
     std::string seed;
+    std::string frames;
     const auto list = [&](const char* name, std::vector<std::string>& to, const char* about) {
         app.add_option(name, to, about)->allow_extra_args(false);
     };
@@ -155,6 +165,10 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     list("--map", maps, "Comma-separated sizes of the shadow map in texels (512)");
     app.add_option("--view", view, "Size of the picture, WxH (1024x768)");
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
+    app.add_option("--path", result.path,
+                   "Move the camera and follow every frame: yaw, forward, strafe, orbit, walk or a "
+                   "file");
+    app.add_option("--frames", frames, "Frames along the path (60)");
     app.add_option("--seed", seed, "Seed of the built-in scenes (1)");
     app.add_option("--out", result.out, "Folder of the report (warpshadow-report)");
     try {
@@ -221,6 +235,15 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     }
     if (!repeat.empty()) {
         result.repeat = positive(repeat, "--repeat");
+    }
+    if (!frames.empty()) {
+        result.frames = positive(frames, "--frames");
+        if (result.path.empty()) {
+            throw bad_input("--frames is for a camera that moves: give a --path too");
+        }
+        if (result.frames < 2) {
+            throw bad_input("--frames wants 2 or more: one frame is no motion");
+        }
     }
     if (!seed.empty()) {
         const std::optional<unsigned> value = number<unsigned>(seed);

@@ -22,6 +22,8 @@ struct options {
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
+    std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
+    int frames = 60;  ///< along the path
     unsigned seed = 1;
     std::string out = "warpshadow-report";
     bool list_scenes = false;

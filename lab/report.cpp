@@ -1,5 +1,7 @@
 #include "lab/report.hpp"
 
+#include "lab/plot.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,29 +9,6 @@
 
 namespace lab {
 namespace {
-
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        default:
-            out += c;
-        }
-    }
-    return out;
-}
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
     static constexpr char digits[] =
@@ -55,187 +34,55 @@ std::string image(const png_file& source, const std::string& what, const char* k
            "\" loading=\"lazy\" src=\"data:image/png;base64," + base64(source.bytes) + "\">";
 }
 
-std::string fixed(double value, int digits) {
-    char buffer[48];
-    std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-    return buffer;
-}
-
-/// Three digits, without an exponent where that is readable.
-std::string short_number(double value) {
-    char buffer[48];
-    std::snprintf(buffer, sizeof buffer, value >= 1000.0 && value < 1e7 ? "%.0f" : "%.3g", value);
-    return buffer;
-}
-
 /// Rank of a method in the order of first appearance; it decides the colour.
 std::size_t rank_of(const results& all, const std::string& method) {
     std::vector<std::string> seen;
-    for (const run_record& run : all.runs) {
-        if (std::find(seen.begin(), seen.end(), run.method) == seen.end()) {
-            seen.push_back(run.method);
+    const auto see = [&](const std::string& each) {
+        if (std::find(seen.begin(), seen.end(), each) == seen.end()) {
+            seen.push_back(each);
         }
+    };
+    for (const run_record& run : all.runs) {
+        see(run.method);
+    }
+    for (const path_record& path : all.paths) {
+        see(path.method);
     }
     return static_cast<std::size_t>(std::find(seen.begin(), seen.end(), method) - seen.begin());
 }
 
-constexpr std::size_t colours = 8;
-
-/// A logarithmic axis over the values, widened to the next of 1, 2, 5 · 10^n on both sides.
-struct log_axis {
-    double lo;
-    double hi;
-    double from;
-    double to;
-
-    [[nodiscard]] double at(double value) const {
-        const double t = std::log(std::clamp(value, lo, hi) / lo) / std::log(hi / lo);
-        return from + t * (to - from);
-    }
-};
-
-std::vector<double> ticks_between(double lo, double hi) {
-    // short axes get more ticks in a decade
-    const std::vector<double> steps = hi > 12.0 * lo
-                                          ? std::vector<double>{1.0, 2.0, 5.0}
-                                          : std::vector<double>{1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0};
-    std::vector<double> result;
-    for (int decade = -9; decade < 12; ++decade) {
-        for (const double step : steps) {
-            const double value = step * std::pow(10.0, decade);
-            if (value >= lo * (1.0 - 1e-9) && value <= hi * (1.0 + 1e-9)) {
-                result.push_back(value);
-            }
-        }
-    }
-    return result;
-}
-
-log_axis axis_over(const std::vector<double>& values, double from, double to) {
-    double least = 1e9;
-    double most = 0.0;
-    for (const double value : values) {
-        least = std::min(least, value);
-        most = std::max(most, value);
-    }
-    if (values.empty()) {
-        least = 0.5;
-        most = 1.0;
-    }
-    double lo = 1e-9;
-    double hi = 1e11;
-    for (const double tick : ticks_between(1e-9, 1e11)) {
-        if (tick < least * 0.999) {
-            lo = tick;
-        }
-        if (tick > most * 1.001 && hi > 1e10) {
-            hi = tick;
-        }
-    }
-    return {lo, hi, from, to};
-}
-
-struct point {
-    double ms;
-    double ms_lo;
-    double ms_hi;
-    double error; ///< per cent
-    int map;
-};
-
 /// Error against frame time; a line joins the map sizes of one method.
 std::string plot_of(const results& all, const view_pictures& view) {
-    std::map<std::size_t, std::pair<std::string, std::vector<point>>> series;
-    std::vector<double> times;
-    std::vector<double> errors;
+    std::map<std::size_t, plot_series> series;
+    std::vector<std::size_t> by_size;
     for (const run_pictures& each : view.runs) {
-        const run_record& run = all.runs[each.run];
+        by_size.push_back(each.run);
+    }
+    std::stable_sort(by_size.begin(), by_size.end(), [&](std::size_t a, std::size_t b) {
+        return all.runs[a].map < all.runs[b].map;
+    });
+    for (const std::size_t index : by_size) {
+        const run_record& run = all.runs[index];
         const std::optional<double> ratio =
             run.against_truth.ratio(run.against_truth.false_shadow + run.against_truth.false_light);
         if (!ratio || !(run.result.frame_ms_min > 0.0)) {
             continue;
         }
-        auto& [name, points] = series[rank_of(all, run.method)];
-        name = run.method;
-        points.push_back({run.result.frame_ms_median, run.result.frame_ms_min,
-                          run.result.frame_ms_max, 100.0 * *ratio, run.map});
-        times.insert(times.end(), {run.result.frame_ms_min, run.result.frame_ms_max});
-        if (*ratio > 0.0) {
-            errors.push_back(100.0 * *ratio);
-        }
+        plot_series& of_method = series[rank_of(all, run.method)];
+        of_method.name = run.method;
+        const std::string size = run.map > 0 ? std::to_string(run.map) + "²" : "";
+        of_method.points.push_back({run.result.frame_ms_median, run.result.frame_ms_min,
+                                    run.result.frame_ms_max, 100.0 * *ratio, size,
+                                    run.method + (run.map > 0 ? " at " + size : "") + ": " +
+                                        short_number(100.0 * *ratio) + " %, " +
+                                        ms_text(run.result.frame_ms_median) + " ms"});
     }
-    if (times.empty()) {
-        return {};
+    std::vector<plot_series> all_series;
+    for (auto& [rank, each] : series) {
+        each.colour = rank;
+        all_series.push_back(std::move(each));
     }
-    const double width = 640.0;
-    const double height = 400.0;
-    const double bottom = height - 52.0;
-    const log_axis x = axis_over(times, 64.0, width - 92.0);
-    const log_axis y = axis_over(errors, bottom - 30.0, 18.0);
-    const auto y_of = [&](double error) { return error > 0.0 ? y.at(error) : bottom - 8.0; };
-
-    std::string svg = "<svg class=\"plot\" viewBox=\"0 0 640 400\" role=\"img\" aria-label=\"Wrong "
-                      "pixels against frame time\">\n";
-    const auto text = [&](double px, double py, const std::string& what, const char* more) {
-        svg += "<text x=\"" + fixed(px, 1) + "\" y=\"" + fixed(py, 1) + "\" " + more + ">" +
-               escaped(what) + "</text>\n";
-    };
-    const auto line = [&](double x0, double y0, double x1, double y1, const std::string& kind) {
-        svg += "<line class=\"" + kind + "\" x1=\"" + fixed(x0, 1) + "\" y1=\"" + fixed(y0, 1) +
-               "\" x2=\"" + fixed(x1, 1) + "\" y2=\"" + fixed(y1, 1) + "\"/>\n";
-    };
-    for (const double tick : ticks_between(x.lo, x.hi)) {
-        line(x.at(tick), 18.0, x.at(tick), bottom, "grid");
-        text(x.at(tick), bottom + 18.0, short_number(tick), "text-anchor=\"middle\"");
-    }
-    for (const double tick : ticks_between(y.lo, y.hi)) {
-        line(64.0, y.at(tick), width - 92.0, y.at(tick), "grid");
-        text(58.0, y.at(tick) + 4.0, short_number(tick), "text-anchor=\"end\"");
-    }
-    line(64.0, bottom, width - 92.0, bottom, "axis");
-    line(64.0, 18.0, 64.0, bottom, "axis");
-    text(58.0, bottom - 4.0, "0", "text-anchor=\"end\"");
-    text(0.5 * (64.0 + width - 92.0), height - 10.0, "frame time, ms", "text-anchor=\"middle\"");
-    svg += "<text transform=\"translate(16 " + fixed(0.5 * bottom + 9.0, 1) +
-           ") rotate(-90)\" text-anchor=\"middle\">wrong pixels, %</text>\n";
-
-    std::vector<std::pair<double, double>> labels; // where names stand already
-    for (auto& [rank, entry] : series) {
-        auto& [name, points] = entry;
-        std::sort(points.begin(), points.end(),
-                  [](const point& a, const point& b) { return a.map < b.map; });
-        const std::string colour = "c" + std::to_string(rank % colours);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const point& p = points[i];
-            if (i > 0) {
-                line(x.at(points[i - 1].ms), y_of(points[i - 1].error), x.at(p.ms), y_of(p.error),
-                     "series " + colour);
-            }
-            line(x.at(p.ms_lo), y_of(p.error), x.at(p.ms_hi), y_of(p.error), "span " + colour);
-            svg += "<circle class=\"" + colour + "\" cx=\"" + fixed(x.at(p.ms), 1) + "\" cy=\"" +
-                   fixed(y_of(p.error), 1) + "\" r=\"5\"><title>" + escaped(name) +
-                   (p.map > 0 ? " at " + std::to_string(p.map) + "²" : "") + ": " +
-                   short_number(p.error) + " %, " + ms_text(p.ms) + " ms</title></circle>\n";
-            if (points.size() > 1) {
-                text(x.at(p.ms), y_of(p.error) - 9.0, std::to_string(p.map) + "²",
-                     "class=\"small\" text-anchor=\"middle\"");
-            }
-        }
-        const double label_x = std::max(x.at(points.back().ms), x.at(points.back().ms_hi)) + 9.0;
-        double label_y = y_of(points.back().error) + 4.0;
-        for (bool moved = true; moved;) {
-            moved = false;
-            for (const auto& [other_x, other_y] : labels) {
-                if (std::abs(other_x - label_x) < 80.0 && std::abs(other_y - label_y) < 13.0) {
-                    label_y = other_y - 13.5;
-                    moved = true;
-                }
-            }
-        }
-        labels.emplace_back(label_x, label_y);
-        text(label_x, label_y, name, ("class=\"name " + colour + "\"").c_str());
-    }
-    return svg + "</svg>\n";
+    return scatter_plot(all_series, "frame time, ms", "wrong pixels, %");
 }
 
 std::string cell(const std::string& text, bool number = true) {
@@ -258,7 +105,7 @@ std::string table(const results& all) {
             grazing = static_cast<double>(c.grazing_wrong) / static_cast<double>(c.grazing_samples);
         }
         html += "<tr>" + cell(run.scene, false) + cell(run.camera, false) + cell(run.light, false) +
-                "<td><i class=\"dot c" + std::to_string(rank_of(all, run.method) % colours) +
+                "<td><i class=\"dot c" + std::to_string(rank_of(all, run.method) % plot_colours) +
                 "\"></i>" + escaped(run.method) + "</td>" +
                 cell(run.map == 0 ? "–" : std::to_string(run.map)) +
                 cell(percent_text(c.ratio(c.false_shadow + c.false_light))) +
@@ -272,9 +119,6 @@ std::string table(const results& all) {
 }
 
 std::string pass_list(const method_result& result) {
-    if (result.passes.empty()) {
-        return {};
-    }
     std::string html = "<p class=\"passes\">";
     for (std::size_t i = 0; i < result.passes.size(); ++i) {
         html += i == 0 ? "" : " · ";
@@ -282,7 +126,15 @@ std::string pass_list(const method_result& result) {
         html += "&nbsp;";
         html += ms_text(result.passes[i].ms);
     }
-    html += " ms</p>\n";
+    html += result.passes.empty() ? "" : " ms; ";
+    for (const auto& [name, us] : result.cpu_setup_us) {
+        html += escaped(name) + " on the CPU&nbsp;" + ms_text(us) + " µs";
+    }
+    html += "; maps&nbsp;" + std::to_string(result.maps);
+    if (result.angle != 0.0) {
+        html += ", turned by " + fixed(glm::degrees(result.angle), 1) + "°";
+    }
+    html += "</p>\n";
     if (!result.status.empty()) {
         html += "<p class=\"passes\">guards:";
         for (const std::string& guard : result.status) {
@@ -308,7 +160,7 @@ std::string view_section(const results& all, const view_pictures& view) {
         }
         const comparison& c = run.against_truth;
         html += "<article><h3><i class=\"dot c" +
-                std::to_string(rank_of(all, run.method) % colours) + "\"></i>" +
+                std::to_string(rank_of(all, run.method) % plot_colours) + "\"></i>" +
                 escaped(run.method) + " <small>" + std::to_string(run.map) + "²</small></h3>\n<p>" +
                 percent_text(c.ratio(c.false_shadow + c.false_light)) + "&nbsp;% wrong, " +
                 ms_text(run.result.frame_ms_median) + "&nbsp;ms, " + bytes_text(run.result.bytes) +
@@ -330,13 +182,67 @@ std::string view_section(const results& all, const view_pictures& view) {
     return html + "</div>\n</section>\n";
 }
 
+std::string path_section(const results& all, const path_pictures& seen) {
+    const path_record& first = all.paths[seen.first];
+    std::string html = "<section>\n<h2>" + escaped(first.scene) + ", " + escaped(first.path) +
+                       "</h2>\n<p>" + std::to_string(first.frames.size()) + " frames from camera " +
+                       escaped(seen.camera_text) + "<br>light " + escaped(seen.light_text) +
+                       "</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>method</th>"
+                       "<th class=\"n\">map</th><th class=\"n\">wrong&nbsp;%</th>"
+                       "<th class=\"n\">flips&nbsp;%</th><th class=\"n\">largest turn&nbsp;°</th>"
+                       "<th class=\"n\">frame ms</th><th class=\"n\">maps</th></tr></thead>\n"
+                       "<tbody>\n";
+    std::vector<frame_series> wrong;
+    std::vector<frame_series> flips;
+    std::vector<frame_series> angles;
+    std::vector<frame_series> times;
+    std::vector<frame_series> maps;
+    for (std::size_t i = seen.first; i < seen.first + seen.count; ++i) {
+        const path_record& path = all.paths[i];
+        const path_means means = means_of(path);
+        const std::size_t rank = rank_of(all, path.method);
+        html += "<tr><td><i class=\"dot c" + std::to_string(rank % plot_colours) + "\"></i>" +
+                escaped(path.method) + "</td>" + cell(std::to_string(path.map)) +
+                cell(percent_text(means.wrong_ratio)) +
+                cell(means.flip_ratio ? fixed(100.0 * *means.flip_ratio, 3) : "-") +
+                cell(fixed(glm::degrees(means.largest_turn), 2)) + cell(ms_text(means.frame_ms)) +
+                cell(short_number(means.maps)) + "</tr>\n";
+        const std::string name =
+            path.method + (seen.one_size ? "" : " " + std::to_string(path.map));
+        for (std::vector<frame_series>* const each : {&wrong, &flips, &angles, &times, &maps}) {
+            each->push_back({name, rank, {}});
+        }
+        const auto per_cent = [](std::optional<double> ratio) {
+            return ratio ? std::optional(100.0 * *ratio) : std::nullopt;
+        };
+        for (const path_frame& frame : path.frames) {
+            wrong.back().values.push_back(per_cent(frame.wrong_ratio));
+            flips.back().values.push_back(per_cent(frame.flip_ratio));
+            angles.back().values.emplace_back(glm::degrees(frame.angle));
+            times.back().values.emplace_back(frame.frame_ms);
+            maps.back().values.emplace_back(frame.maps);
+        }
+    }
+    html += "</tbody></table></div>\n<div class=\"plots\">\n" +
+            frame_plot(wrong, "wrong pixels, %") + frame_plot(flips, "pixels that flip, %") +
+            frame_plot(angles, "turn of the map, °") + frame_plot(times, "frame time, ms") +
+            frame_plot(maps, "maps drawn") + "</div>\n<div class=\"cards\">\n";
+    for (const auto& [caption, picture] : seen.pictures) {
+        html += "<figure>" + image(picture, caption) + "<figcaption>" + escaped(caption) +
+                "</figcaption></figure>\n";
+    }
+    return html + "</div>\n</section>\n";
+}
+
 constexpr const char* style = R"(
 :root { color-scheme: light dark; --paper: #fbfaf7; --ink: #1f2328; --soft: #5d6670; --rule: #d9d6cf;
   --card: #ffffff; --c0: #7b8794; --c1: #2f7dc0; --c2: #c4532d; --c3: #9a6cc0; --c4: #3f8f4f;
-  --c5: #b88a00; --c6: #c2417c; --c7: #2a9d9d; }
+  --c5: #b88a00; --c6: #c2417c; --c7: #2a9d9d; --c8: #5b6bd6; --c9: #8a6d3b;
+  --c10: #6a994e; --c11: #a23b3b; }
 @media (prefers-color-scheme: dark) { :root { --paper: #16181b; --ink: #e6e4df; --soft: #9aa3ad;
   --rule: #33383e; --card: #1d2024; --c0: #9aa7b4; --c1: #63aeea; --c2: #f0845c; --c3: #bf9be0;
-  --c4: #6fc283; --c5: #e0b84a; --c6: #ec7fb0; --c7: #5fcaca; } }
+  --c4: #6fc283; --c5: #e0b84a; --c6: #ec7fb0; --c7: #5fcaca;
+  --c8: #98a4ff; --c9: #c7a66b; --c10: #a3cf86; --c11: #e08080; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink);
   font: 16px/1.5 system-ui, -apple-system, "Segoe UI", sans-serif; }
@@ -359,12 +265,15 @@ figure { margin: 0; } figcaption { font-size: .8rem; } summary { cursor: pointer
 .plot text { fill: var(--ink); } .plot .small { font-size: 10px; fill: var(--soft); }
 .grid { stroke: var(--rule); stroke-width: .6; } .axis { stroke: var(--soft); }
 .series { stroke-width: 1.6; } .span { stroke-width: 1.2; }
+.plots { display: grid; gap: .4rem 1.2rem;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); }
+.plot .open { fill: none; }
 .dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin-right: .45em; }
 )";
 
 std::string colour_rules() {
     std::string css;
-    for (std::size_t i = 0; i < colours; ++i) {
+    for (std::size_t i = 0; i < plot_colours; ++i) {
         const std::string name = std::string("c") + std::to_string(i);
         const std::string colour = std::string("var(--") + name + ")";
         css += '.';
@@ -378,7 +287,8 @@ std::string colour_rules() {
 
 } // namespace
 
-std::string html_of(const results& all, const std::vector<view_pictures>& views) {
+std::string html_of(const results& all, const std::vector<view_pictures>& views,
+                    const std::vector<path_pictures>& paths) {
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -393,13 +303,22 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views)
         "light. Counted are pixels that face the light (n·l &gt; 0.1); those at grazing light "
         "(0 &lt; n·l ≤ 0.1) have a column of their own. Wrong pixels are red in the "
         "pictures.</p>\n" +
-        table(all);
+        (all.runs.empty() ? std::string() : table(all));
+    if (!paths.empty()) {
+        html +=
+            "<p>A pixel flips when the maps of one frame and those of the next disagree about the "
+            "shadow on the same place of a surface that both frames see, though nothing but the "
+            "camera moved.</p>\n";
+    }
     for (const not_applicable& each : all.left_out) {
         html += "<p>" + escaped(each.method) + " does not apply to " + escaped(each.scene) +
                 ", light " + escaped(each.light) + ": " + escaped(each.reason) + ".</p>\n";
     }
     for (const view_pictures& view : views) {
         html += view_section(all, view);
+    }
+    for (const path_pictures& path : paths) {
+        html += path_section(all, path);
     }
     return html + "</main></body>\n</html>\n";
 }

@@ -31,7 +31,18 @@ struct view_pictures {
     std::vector<run_pictures> runs;
 };
 
+/// One scene, camera, light and path.
+struct path_pictures {
+    std::size_t first; ///< of its records in results::paths
+    std::size_t count;
+    bool one_size; ///< all records have maps of one size
+    std::string camera_text;
+    std::string light_text;
+    std::vector<std::pair<std::string, png_file>> pictures; ///< with their captions
+};
+
 /// A page that needs nothing but itself: pictures and plots are inside.
-std::string html_of(const results& all, const std::vector<view_pictures>& views);
+std::string html_of(const results& all, const std::vector<view_pictures>& views,
+                    const std::vector<path_pictures>& paths);
 
 } // namespace lab

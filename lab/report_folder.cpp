@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -139,6 +140,19 @@ fs::path report_folder::publish() {
     }
     published_ = true;
     return wanted_;
+}
+
+std::string picture_name(std::initializer_list<std::string> parts) {
+    std::string name;
+    for (const std::string& part : parts) {
+        name += name.empty() ? "" : "-";
+        for (const char c : part) {
+            const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
+                               c == '-' || c == '_';
+            name += plain ? c : '_';
+        }
+    }
+    return name + ".png";
 }
 
 } // namespace lab

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,5 +36,8 @@ class report_folder {
     std::filesystem::path made_parent_; ///< outermost parent made for the folder
     bool published_ = false;
 };
+
+/// Name of a PNG file of these parts; characters that file systems treat apart are replaced.
+std::string picture_name(std::initializer_list<std::string> parts);
 
 } // namespace lab

@@ -52,8 +52,59 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     }
     json["bytes"] = r.bytes;
     json["triangles"] = r.triangles;
+    json["maps"] = r.maps;
+    json["angle_degrees"] = glm::degrees(r.angle);
     json["status"] = r.status;
     return json;
+}
+
+ordered_json json_of_path(const path_record& path, glm::ivec2 view) {
+    const path_means means = means_of(path);
+    ordered_json json;
+    json["scene"] = path.scene;
+    json["camera"] = path.camera;
+    json["light"] = path.light;
+    json["path"] = path.path;
+    json["method"] = path.method;
+    json["map"] = path.map;
+    json["view"] = {view.x, view.y};
+    ordered_json mean;
+    mean["wrong_pixel_ratio"] = number_or_null(means.wrong_ratio);
+    mean["flip_ratio"] = number_or_null(means.flip_ratio);
+    mean["largest_turn_degrees"] = glm::degrees(means.largest_turn);
+    mean["frame_ms"] = means.frame_ms;
+    mean["maps"] = means.maps;
+    json["mean"] = mean;
+    json["frames"] = ordered_json::array();
+    for (const path_frame& frame : path.frames) {
+        ordered_json entry;
+        entry["wrong_pixel_ratio"] = number_or_null(frame.wrong_ratio);
+        entry["flip_ratio"] = number_or_null(frame.flip_ratio);
+        entry["angle_degrees"] = glm::degrees(frame.angle);
+        entry["frame_ms"] = frame.frame_ms;
+        entry["maps"] = frame.maps;
+        json["frames"].push_back(entry);
+    }
+    return json;
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t texts) {
+    std::string text;
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            widths[i] = std::max(widths[i], row[i].size());
+        }
+    }
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string space(widths[i] - row[i].size(), ' ');
+            text += i < texts ? row[i] + space : space + row[i];
+            text += i + 1 < row.size() ? "  " : "";
+        }
+        text += '\n';
+    }
+    return text;
 }
 
 } // namespace
@@ -67,6 +118,10 @@ std::string json_of(const results& all) {
     json["runs"] = ordered_json::array();
     for (const run_record& run : all.runs) {
         json["runs"].push_back(json_of_run(run, all.view));
+    }
+    json["paths"] = ordered_json::array();
+    for (const path_record& path : all.paths) {
+        json["paths"].push_back(json_of_path(path, all.view));
     }
     json["not_applicable"] = ordered_json::array();
     for (const not_applicable& each : all.left_out) {
@@ -123,21 +178,24 @@ std::string table_of(const results& all) {
                         percent_text(c.ratio(c.false_shadow)), percent_text(c.ratio(c.false_light)),
                         ms_text(run.result.frame_ms_median), bytes_text(run.result.bytes)});
     }
-    std::string text;
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const std::vector<std::string>& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            widths[i] = std::max(widths[i], row[i].size());
+    std::string text = all.runs.empty() ? std::string() : aligned(rows, 4);
+    if (!all.paths.empty()) {
+        rows = {{"scene", "camera", "light", "path", "method", "map", "wrong %", "flips %",
+                 "largest turn", "frame ms", "maps"}};
+        for (const path_record& path : all.paths) {
+            const path_means means = means_of(path);
+            const auto number = [](double value, const char* how) {
+                char buffer[32];
+                std::snprintf(buffer, sizeof buffer, how, value);
+                return std::string(buffer);
+            };
+            rows.push_back({path.scene, path.camera, path.light, path.path, path.method,
+                            std::to_string(path.map), percent_text(means.wrong_ratio),
+                            means.flip_ratio ? number(100.0 * *means.flip_ratio, "%.3f") : "-",
+                            number(glm::degrees(means.largest_turn), "%.2f"),
+                            ms_text(means.frame_ms), number(means.maps, "%.1f")});
         }
-    }
-    for (const std::vector<std::string>& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            const std::string space(widths[i] - row[i].size(), ' ');
-            const bool is_text = i < 4;
-            text += is_text ? row[i] + space : space + row[i];
-            text += i + 1 < row.size() ? "  " : "";
-        }
-        text += '\n';
+        text += aligned(rows, 5);
     }
     for (const not_applicable& each : all.left_out) {
         text += "not applicable: " + each.method + " on " + each.scene + ", light " + each.light +

@@ -3,6 +3,7 @@
 
 #include "lab/measure.hpp"
 #include "lab/methods.hpp"
+#include "lab/path.hpp"
 
 #include <glm/glm.hpp>
 
@@ -37,13 +38,14 @@ struct results {
     std::string timing; ///< "timer_query" or "glfinish"
     glm::ivec2 view{0};
     std::vector<run_record> runs;
+    std::vector<path_record> paths;
     std::vector<not_applicable> left_out;
 };
 
 /// The text of results.json, schema 1.
 std::string json_of(const results& all);
 
-/// A table for a terminal, one line per run.
+/// A table for a terminal, one line per run, or per method along a path.
 std::string table_of(const results& all);
 
 /// A share as per cent, "-" when there is none.

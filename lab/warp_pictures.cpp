@@ -1,5 +1,7 @@
 #include "lab/warp_pictures.hpp"
 
+#include "lab/canvas.hpp"
+
 #include <warpshadow/warp.hpp>
 
 #include <algorithm>
@@ -14,26 +16,6 @@ namespace ws = warpshadow;
 namespace {
 
 constexpr int grid_lines = 24;
-
-struct canvas {
-    canvas(std::string name, int size)
-        : picture{std::move(name), size, size,
-                  std::vector<std::uint8_t>(3 * static_cast<std::size_t>(size) *
-                                            static_cast<std::size_t>(size))} {}
-
-    /// Row 0 of `y` is the bottom; pictures start at the top.
-    void set(int x, int y, glm::vec3 colour) {
-        const std::size_t first = 3 * (static_cast<std::size_t>(picture.height - 1 - y) *
-                                           static_cast<std::size_t>(picture.width) +
-                                       static_cast<std::size_t>(x));
-        for (std::size_t i = 0; i < 3; ++i) {
-            const float value = std::clamp(colour[static_cast<glm::length_t>(i)], 0.0f, 1.0f);
-            picture.rgb[first + i] = static_cast<std::uint8_t>(value * 255.0f + 0.5f);
-        }
-    }
-
-    named_picture picture;
-};
 
 /// Black over blue and orange to white: dark where no view sample falls.
 glm::vec3 heat(float t) {
@@ -99,7 +81,7 @@ std::vector<named_picture> warp_pictures(const warp_readback& warp) {
     return result;
 }
 
-named_picture depth_picture(const std::vector<float>& depth, int size) {
+named_picture depth_picture(std::span<const float> depth, int size, std::string name) {
     float lo = std::numeric_limits<float>::infinity();
     float hi = 0.0f;
     for (const float d : depth) {
@@ -109,7 +91,7 @@ named_picture depth_picture(const std::vector<float>& depth, int size) {
         }
     }
     const float scale = hi > lo ? 0.9f / (hi - lo) : 0.0f;
-    canvas result("shadow-map", size);
+    canvas result(std::move(name), size);
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const float d = depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +

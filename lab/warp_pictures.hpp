@@ -4,6 +4,8 @@
 #include "lab/methods.hpp"
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace lab {
@@ -20,7 +22,7 @@ struct warp_readback {
 /// "importance", "importance-rows-warped" (Milet et al. 2015, figure 4) and "warp-grid" (figure 5).
 std::vector<named_picture> warp_pictures(const warp_readback& warp);
 
-/// "shadow-map": depth, contrast stretched to what is there, near is dark.
-named_picture depth_picture(const std::vector<float>& depth, int size);
+/// Depth, contrast stretched to what is there, near is dark.
+named_picture depth_picture(std::span<const float> depth, int size, std::string name);
 
 } // namespace lab

@@ -14,7 +14,6 @@ void main()
         ws_widen_side(uintBitsToFloat(desired_lo[0]), uintBitsToFloat(desired_hi[0]), margin, lo.x, hi.x);
         ws_widen_side(uintBitsToFloat(desired_lo[1]), uintBitsToFloat(desired_hi[1]), margin, lo.y, hi.y);
     }
-    light_rect = vec4(lo, hi);
     vec2 scale = 1.0 / (hi - lo);
     vec2 shift = (1.0 - 2.0 * lo) * scale - 1.0;
     mat4 cropped = light_full;

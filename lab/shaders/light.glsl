@@ -1,14 +1,27 @@
-// The light as every pass sees it: its matrix lives in a buffer, so that the desired view can crop
-// it on the device without a round trip.
+// The light and its maps as every pass sees them: the matrices live in a buffer, so that the desired
+// view can crop them on the device without a round trip.
+#include "warpshadow/cube.glsl"
+
+struct light_map
+{
+    mat4 full;   // clip from world, before the crop
+    mat4 matrix; // clip from world, cropped to the desired view
+    mat4 normal; // inverse transpose of matrix: planes from world to clip
+};
+
 layout(std430, binding = 4) buffer light_buffer
 {
-    mat4 light_full;         // clip from world, before the crop
-    mat4 light_matrix;       // clip from world, cropped to the desired view
-    mat4 light_normal;       // inverse transpose of light_matrix: planes from world to clip
-    vec4 light_position;     // xyz and w = 1, or the direction towards the sun and w = 0
-    vec4 light_axis;         // xyz the spot's axis, w the cosine of half its angle; sun: (0, 0, 0, -2)
-    vec4 light_rect;         // lo.xy, hi.xy of the crop in the full map
+    vec4 light_position; // xyz and w = 1, or the direction towards the sun and w = 0
+    vec4 light_axis;     // xyz the spot's axis, w the cosine of half its angle; others (0, 0, 0, -2)
+    ivec4 light_choice;  // x: map_choice
+    light_map light_maps[];
 };
+
+uniform int map_index; // the map that this pass is about
+
+#define light_full light_maps[map_index].full
+#define light_matrix light_maps[map_index].matrix
+#define light_normal light_maps[map_index].normal
 
 vec3 towards_light(vec3 world)
 {
@@ -20,4 +33,10 @@ float lit_cosine(vec3 world, vec3 normal)
 {
     vec3 l = towards_light(world);
     return dot(-l, light_axis.xyz) >= light_axis.w ? dot(normal, l) : 0.0;
+}
+
+// The map in which a point is looked up.
+int map_of(vec3 world)
+{
+    return light_choice.x == 1 ? max(ws_cube_lookup(world - light_position.xyz).face, 0) : 0;
 }

@@ -7,10 +7,11 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 #include "lab/light.glsl"
 #include "lab/view_sample.glsl"
-layout(r8ui, binding = 0) uniform writeonly uimage2D shadow_mask;
-uniform sampler2D shadow_map;
-#ifdef WARPED
 #include "warpshadow/warp.glsl"
+#include "warpshadow/bias.glsl"
+layout(r8ui, binding = 0) uniform writeonly uimage2D shadow_mask;
+uniform sampler2DArray shadow_map; // one layer per map
+#ifdef WARPED
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
 layout(binding = 4) uniform sampler2D centres;
@@ -25,11 +26,17 @@ void main()
     }
     uint dark = 1u;
     vec4 world = texelFetch(g_position, pixel, 0);
+    int map = map_of(world.xyz);
+#ifdef WARPED
+    if (map != map_index) {
+        return;
+    }
+#endif
     vec3 normal = texelFetch(g_normal, pixel, 0).xyz;
     if (world.w != 0.0 && lit_cosine(world.xyz, normal) > 0.0) {
-        vec4 clip = light_matrix * vec4(world.xyz, 1.0);
+        vec4 clip = light_maps[map].matrix * vec4(world.xyz, 1.0);
         vec3 p = clip.xyz / clip.w * 0.5 + 0.5;
-        ivec2 map_size = textureSize(shadow_map, 0);
+        ivec2 map_size = textureSize(shadow_map, 0).xy;
 #ifdef WARPED
         vec2 q = ws_warp(warp_rows, warp_columns, p.xy);
         ivec2 texel = clamp(ivec2(q * vec2(map_size)), ivec2(0), map_size - 1);
@@ -38,16 +45,14 @@ void main()
         ivec2 texel = clamp(ivec2(p.xy * vec2(map_size)), ivec2(0), map_size - 1);
         vec2 centre = (vec2(texel) + 0.5) / vec2(map_size);
 #endif
-        vec4 plane = light_normal * vec4(normal, -dot(normal, world.xyz));
-        vec2 slope = -plane.xy / plane.z;
-        vec2 step = centre - p.xy;
-        float move = dot(slope, step);
+        // clip space and map space differ by one factor on all axes: the normal is the same
+        vec3 plane = ws_map_normal(light_maps[map].normal, vec4(normal, -dot(normal, world.xyz)));
+        // edge-on to the light there is no slope to follow; the sample's own depth serves then
+        float move = ws_plane_depth_step(plane, p.xy, centre, 1.0);
         // rounding of position, matrix and depth, about 2^-21 of the map and of the depth range
-        float rounding = 4.8e-7 * (1.0 + abs(slope.x) + abs(slope.y));
+        float rounding = 4.8e-7 * (1.0 + (abs(plane.x) + abs(plane.y)) / abs(plane.z));
         float receiver = p.z + move - rounding;
-        // edge-on to the light the slope is not finite; the sample's own depth serves then
-        receiver = abs(move) <= 1.0 ? receiver : p.z - rounding;
-        dark = texelFetch(shadow_map, texel, 0).r < receiver ? 1u : 0u;
+        dark = texelFetch(shadow_map, ivec3(texel, map), 0).r < receiver ? 1u : 0u;
     }
     imageStore(shadow_mask, pixel, uvec4(dark));
 }

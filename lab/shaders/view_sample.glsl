@@ -11,7 +11,8 @@ bool lit_sample(ivec2 pixel, mat4 clip_from_world, out vec2 p)
 {
     p = vec2(0.0);
     vec4 world = texelFetch(g_position, pixel, 0);
-    if (world.w == 0.0 || lit_cosine(world.xyz, texelFetch(g_normal, pixel, 0).xyz) <= 0.0) {
+    if (world.w == 0.0 || map_of(world.xyz) != map_index ||
+        lit_cosine(world.xyz, texelFetch(g_normal, pixel, 0).xyz) <= 0.0) {
         return false;
     }
     vec4 clip = clip_from_world * vec4(world.xyz, 1.0);

@@ -13,13 +13,15 @@ import sys
 from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-METHODS = ["sm", "dv", "notw", "notw-nodv"]
+METHODS = ["sm", "stable", "min-sm", "dv", "min-sm-notw", "notw", "notw-nodv"]
+NOT_FOR_POINTS = ["sm", "stable", "notw-nodv"]
 SMALL = ["--view", "96x64", "--repeat", "2"]
 RUN_KEYS = {
     "scene", "camera", "light", "method", "map", "view", "samples", "wrong_pixel_ratio",
     "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
-    "bytes", "triangles", "status",
+    "bytes", "triangles", "maps", "angle_degrees", "status",
 }
+PATH_KEYS = ["scene", "camera", "light", "path", "method", "map", "view", "mean", "frames"]
 
 
 def run(*arguments):
@@ -58,7 +60,10 @@ def check_files(folder):
     for source in sources:
         png_size(base64.b64decode(source.split(",", 1)[1], validate=True))
     assert "http:" not in html and "https:" not in html, "the page must need nothing but itself"
-    assert html.count("<svg") == html.count("<section>") == html.count("</section>")
+    results = json.loads((folder / "results.json").read_text())
+    plots_of_a_section = 1 if results["runs"] else 5
+    assert html.count("<section>") == html.count("</section>") > 0
+    assert html.count("<svg") == plots_of_a_section * html.count("<section>")
     assert 'name="viewport"' in html and "prefers-color-scheme: dark" in html
 
 
@@ -69,13 +74,14 @@ def png_size(content):
 
 
 def check_results(results):
-    assert list(results) == ["schema", "device", "timing", "runs", "not_applicable"]
+    assert list(results) == [
+        "schema", "device", "timing", "runs", "paths", "not_applicable"]
     assert results["schema"] == 1
     assert results["device"]["renderer"] and results["device"]["version"]
     assert results["timing"] in ("timer_query", "glfinish")
     software = any(s in results["device"]["renderer"].lower() for s in ("llvmpipe", "softpipe"))
     assert results["timing"] == ("glfinish" if software else "timer_query")
-    assert results["runs"]
+    assert bool(results["runs"]) != bool(results["paths"]), "one or the other"
     for entry in results["runs"]:
         assert set(entry) == RUN_KEYS, set(entry) ^ RUN_KEYS
         assert entry["view"] == [96, 64]
@@ -135,10 +141,55 @@ def check_spot_and_point():
 
     point = report("point", "--scene", "interior", "--camera", camera, "--light",
                    "point:0.2,1.97,-0.1", "--map", "64")
-    assert methods_of(point) == [("raytraced", 0)]
+    seen = [m for m in METHODS if m not in NOT_FOR_POINTS]
+    assert methods_of(point) == [(m, 64) for m in seen] + [("raytraced", 0)]
     assert [(e["method"], e["light"]) for e in point["not_applicable"]] == (
-        [(m, "point:0.2,1.97,-0.1") for m in METHODS])
+        [(m, "point:0.2,1.97,-0.1") for m in NOT_FOR_POINTS])
     assert all(e["reason"] and e["scene"] == "interior" for e in point["not_applicable"])
+    by_name = {r["method"]: r for r in point["runs"]}
+    # the lamp hangs in front of the camera: all six faces may be needed
+    assert by_name["dv"]["maps"] == 6 and by_name["dv"]["bytes"] >= 6 * 4 * 64 * 64
+    for m in seen:
+        assert by_name[m]["wrong_pixel_ratio"] < 0.2, (m, by_name[m]["wrong_pixel_ratio"])
+
+    # a lamp behind the camera's back: the face away from the view is not drawn
+    behind = report("behind", "--scene", "interior", "--camera", camera, "--light",
+                    "point:-1.6,1.5,1.5", "--map", "64", "--methods", "min-sm,dv")
+    by_name = {r["method"]: r for r in behind["runs"]}
+    assert 0 < by_name["min-sm"]["maps"] < 6 and by_name["dv"]["maps"] == 6
+
+
+def check_paths():
+    """A camera that moves: frame by frame, and against what must hold for any camera."""
+    arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,raytraced", "--map", "64"]
+    yaw = report("yaw", *arguments, "--path", "yaw", "--frames", "4")
+    assert [p["method"] for p in yaw["paths"]] == ["sm", "stable", "min-sm", "dv"]
+    for path in yaw["paths"]:
+        assert list(path) == PATH_KEYS and path["path"] == "yaw" and len(path["frames"]) == 4
+        frames = path["frames"]
+        assert frames[0]["flip_ratio"] is None, "nothing goes before the first"
+        assert all(0 <= f["flip_ratio"] <= 1 for f in frames[1:])
+        assert all(f["frame_ms"] > 0 and f["maps"] == 1 for f in frames)
+        flips = [f["flip_ratio"] for f in frames[1:]]
+        assert abs(path["mean"]["flip_ratio"] - sum(flips) / len(flips)) < 1e-12
+    flips = {p["method"]: p["mean"]["flip_ratio"] for p in yaw["paths"]}
+    assert flips["sm"] == 0, "the map of the whole scene does not know the camera"
+    assert flips["stable"] < 0.01 < flips["dv"], flips
+    # what does not move does not flip, and the first frame is the view that stands still
+    still = report("still", *arguments)
+    first = {p["method"]: p["frames"][0] for p in yaw["paths"]}
+    for entry in still["runs"]:
+        if entry["map"] != 0:
+            assert first[entry["method"]]["wrong_pixel_ratio"] == entry["wrong_pixel_ratio"]
+            assert first[entry["method"]]["angle_degrees"] == entry["angle_degrees"]
+
+    keys = scratch / "keys.txt"
+    keys.write_text("# two cameras of the scene\n0\n1\n")
+    walk = report("walk", *arguments, "--path", str(keys), "--frames", "3")
+    assert all(len(p["frames"]) == 3 for p in walk["paths"])
+    assert walk["paths"][0]["frames"][0]["wrong_pixel_ratio"] == (
+        yaw["paths"][0]["frames"][0]["wrong_pixel_ratio"]), "it begins at the first camera"
+    keys.unlink()
 
 
 def check_files_as_scenes():
@@ -183,7 +234,7 @@ def check_help():
     done = run("--help")
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
-                   "--view", "--repeat", "--seed", "--out", "Examples:"):
+                   "--view", "--repeat", "--path", "--frames", "--seed", "--out", "Examples:"):
         assert option in done.stdout, option
     listed = run("--list-scenes")
     assert listed.returncode == 0 and listed.stderr == ""
@@ -199,6 +250,7 @@ check_help()
 check_folders()
 check_every_method()
 check_spot_and_point()
+check_paths()
 check_files_as_scenes()
 check_views()
 shutil.rmtree(scratch)

@@ -1,0 +1,201 @@
+#include "lab/light_maps.hpp"
+
+#include <warpshadow/cube.hpp>
+#include <warpshadow/fit.hpp>
+#include <warpshadow/stable_fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lab {
+
+namespace ws = warpshadow;
+
+namespace {
+
+/// Depth starts at this share of the distance to the farthest point.
+constexpr double near_share = 0x1p-10;
+
+constexpr int faces = 6;
+
+void check_reach(const scene& world, const light_view& view, ws::status flags) {
+    if (ws::any(flags, ws::status::invalid_input | ws::status::out_of_range)) {
+        throw bad_input("the light " + view.label + " does not reach the scene " + world.name);
+    }
+}
+
+ws::frustum<double> face_of(const scene& world, const ws::light<double>& light, int face) {
+    const glm::dvec3 axis = ws::cube_direction(face, glm::dvec2(0.5));
+    // a face that looks away from the scene needs a depth range too
+    const double far_distance = std::max(farthest_along(world.box, light.position, axis),
+                                         near_share * glm::length(world.box.hi - world.box.lo));
+    return ws::face_camera(light.position, face, ws::cube_api::opengl, far_distance * near_share,
+                           far_distance)
+        .value;
+}
+
+glm::dmat4 matrix_of(const ws::frustum<double>& camera) {
+    return ws::projection_matrix(camera.volume, ws::clip::opengl) *
+           ws::view_matrix(camera, ws::clip::opengl);
+}
+
+/// The part of a cube face that the receivers in view take up; not used if there is none.
+light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
+                       const ws::light<double>& light, int face, int map_size) {
+    const ws::frustum<double> face_view = face_of(world, light, face);
+    // the cone around the face's pyramid
+    const double corner = 2.0 * std::atan(std::numbers::sqrt2);
+    const ws::light<double> beam{ws::light_kind::spot, light.position, face_view.forward, corner};
+    const ws::focus_result seen = focus_on(world, camera, beam);
+    light_map result{matrix_of(face_view), seen.receivers.count > 0};
+    if (seen.footprint_count == 0) {
+        return result; // nothing in view, or no bounds: the whole face
+    }
+    glm::dvec2 lo(1.0);
+    glm::dvec2 hi(0.0);
+    for (std::size_t i = 0; i < seen.footprint_count; ++i) {
+        const glm::dvec3 ray = seen.view.forward + seen.footprint[i].x * seen.view.right +
+                               seen.footprint[i].y * seen.view.up;
+        const double along = glm::dot(ray, face_view.forward);
+        const glm::dvec2 p =
+            0.5 +
+            0.5 * glm::dvec2(glm::dot(ray, face_view.right), glm::dot(ray, face_view.up)) / along;
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    lo = glm::max(lo, 0.0);
+    hi = glm::min(hi, 1.0);
+    result.used = lo.x < hi.x && lo.y < hi.y;
+    if (result.used) {
+        const double margin = 0.5 / std::max(map_size - 1, 1);
+        ws::map_rect<double> rect{lo, hi};
+        ws::widen_side(lo.x, hi.x, margin, rect.lo.x, rect.hi.x);
+        ws::widen_side(lo.y, hi.y, margin, rect.lo.y, rect.hi.y);
+        result.matrix = ws::crop_matrix(result.matrix, rect).matrix;
+    }
+    return result;
+}
+
+} // namespace
+
+double farthest_along(const ws::box3<double>& box, glm::dvec3 from, glm::dvec3 axis) {
+    double farthest = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x,
+                                (i & 2) != 0 ? box.hi.y : box.lo.y,
+                                (i & 4) != 0 ? box.hi.z : box.lo.z);
+        farthest = std::max(farthest, glm::dot(corner - from, axis));
+    }
+    return farthest;
+}
+
+ws::frustum<double> camera_frustum(const scene& world, const camera_view& camera, glm::ivec2 view) {
+    const double aspect = static_cast<double>(view.x) / view.y;
+    const double far_distance =
+        1.01 *
+        std::max(farthest_along(world.box, camera.eye, glm::normalize(camera.target - camera.eye)),
+                 1e-3);
+    const ws::view_volume<double> volume =
+        ws::perspective_volume(camera.fov_y, aspect, far_distance * 0x1p-13, far_distance);
+    return ws::make_frustum(camera.eye, camera.target - camera.eye, glm::dvec3(0.0, 1.0, 0.0),
+                            volume)
+        .value;
+}
+
+glm::mat4 camera_matrix(const ws::frustum<double>& camera) {
+    return glm::mat4(matrix_of(camera));
+}
+
+ws::focus_result focus_on(const scene& world, const ws::frustum<double>& camera,
+                          const ws::light<double>& light) {
+    return ws::focus(ws::focus_input<double>{camera, light, world.box, world.box});
+}
+
+light_maps whole_scene_maps(const scene& world, const light_view& view) {
+    const ws::light<double>& light = view.light;
+    light_maps result;
+    if (light.kind == ws::light_kind::point) {
+        result.choice = map_choice::cube_face;
+        for (int face = 0; face < faces; ++face) {
+            result.maps.push_back({matrix_of(face_of(world, light, face)), true});
+        }
+        return result;
+    }
+    ws::light_matrix_result<double> built;
+    if (light.kind == ws::light_kind::directional) {
+        built = ws::directional_light_matrix(light, world.box, ws::clip::opengl);
+    } else {
+        const double far_distance =
+            farthest_along(world.box, light.position, glm::normalize(light.direction));
+        built =
+            ws::spot_light_matrix(light, far_distance * near_share, far_distance, ws::clip::opengl);
+    }
+    check_reach(world, view, built.flags);
+    result.maps.push_back({built.matrix, true});
+    return result;
+}
+
+light_maps minimal_maps(const scene& world, const ws::frustum<double>& camera,
+                        const light_view& view, int map_size, light_memory& memory) {
+    const ws::light<double>& light = view.light;
+    light_maps result;
+    if (light.kind == ws::light_kind::point) {
+        result.choice = map_choice::cube_face;
+        for (int face = 0; face < faces; ++face) {
+            result.maps.push_back(cropped_face(world, camera, light, face, map_size));
+        }
+        return result;
+    }
+    const ws::focus_result seen = focus_on(world, camera, light);
+    result.flags = seen.flags;
+    if (seen.footprint_count == 0) {
+        // no receiver, or no bound for them: the map of everything serves
+        const light_maps whole = whole_scene_maps(world, view);
+        result.maps = whole.maps;
+        result.flags |= whole.flags;
+        return result;
+    }
+    ws::fit_options<double> options;
+    options.frame = ws::fit_frame::rotated_minimal;
+    options.clip = ws::clip::opengl;
+    options.map_size = glm::ivec2(map_size);
+    options.margin = 0.5; // as the desired view has: no sample on the border
+    if (light.kind == ws::light_kind::spot) {
+        options.least_near =
+            near_share * farthest_along(world.box, light.position, glm::normalize(light.direction));
+    }
+    const ws::shadow_fit<double> fit = ws::minimal_shadow_frustum(seen, options, memory.fit);
+    result.flags |= fit.flags;
+    result.angle = fit.angle;
+    result.maps.push_back({fit.matrix, true});
+    return result;
+}
+
+light_maps stable_maps(const scene& world, const ws::frustum<double>& camera,
+                       const light_view& view, int map_size) {
+    ws::frustum<double> turning = camera;
+    // a far plane that depends on where the camera looks would change the texels with it
+    turning.volume.far_distance = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1) != 0 ? world.box.hi.x : world.box.lo.x,
+                                (i & 2) != 0 ? world.box.hi.y : world.box.lo.y,
+                                (i & 4) != 0 ? world.box.hi.z : world.box.lo.z);
+        turning.volume.far_distance =
+            std::max(turning.volume.far_distance, glm::length(corner - camera.eye));
+    }
+    // and one that depends on where it stands: in powers of two, as rarely as can be
+    turning.volume.far_distance = std::exp2(std::ceil(std::log2(turning.volume.far_distance)));
+    turning.volume.near_distance = turning.volume.far_distance * 0x1p-13;
+    ws::stable_options<double> options;
+    options.map_size = map_size;
+    options.clip = ws::clip::opengl;
+    const ws::stable_result<double> fit = ws::stable_fit(turning, view.light, world.box, options);
+    check_reach(world, view, fit.flags);
+    light_maps result;
+    result.maps.push_back({fit.matrix, true});
+    result.flags = fit.flags;
+    return result;
+}
+
+} // namespace lab

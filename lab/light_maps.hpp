@@ -1,0 +1,69 @@
+// Where a method puts its shadow maps: the part of a frame that runs on the CPU.
+#pragma once
+
+#include "lab/scene.hpp"
+
+#include <warpshadow/focus.hpp>
+#include <warpshadow/shadow_frustum.hpp>
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace lab {
+
+/// Which of a method's maps a point of the scene is looked up in; mirrored in shaders/light.glsl.
+enum class map_choice {
+    single = 0,   ///< there is one
+    cube_face = 1 ///< the face of the light's cube, in the order of `warpshadow::cube_lookup`
+};
+
+/// One shadow map.
+struct light_map {
+    glm::dmat4 matrix{1.0}; ///< clip space (OpenGL) from the world, before a crop on the device
+    bool used = true;       ///< false: nothing in view receives light from it, it is not drawn
+};
+
+/// All maps of a method, and what choosing them met.
+struct light_maps {
+    std::vector<light_map> maps;
+    map_choice choice = map_choice::single;
+    double angle = 0.0; ///< of the map's sides to the axes of the light, radians
+    warpshadow::status flags = warpshadow::status::ok;
+};
+
+/// What the set-up of one method keeps from frame to frame.
+struct light_memory {
+    warpshadow::fit_state fit;
+};
+
+/// Distance from `from` to the farthest corner of a box along an axis of unit length; at least 0.
+double farthest_along(const warpshadow::box3<double>& box, glm::dvec3 from, glm::dvec3 axis);
+
+/// The camera's view of the whole scene; near is 2^-13 of far.
+warpshadow::frustum<double> camera_frustum(const scene& world, const camera_view& camera,
+                                           glm::ivec2 view);
+
+/// Clip space (OpenGL) from the world.
+glm::mat4 camera_matrix(const warpshadow::frustum<double>& camera);
+
+/// What the camera and the light make of the scene's box.
+warpshadow::focus_result focus_on(const scene& world, const warpshadow::frustum<double>& camera,
+                                  const warpshadow::light<double>& light);
+
+/// `sm`: maps of all that the light reaches in the scene's box; a point light has six.
+/// @throws bad_input when the light does not reach the scene.
+light_maps whole_scene_maps(const scene& world, const light_view& view);
+
+/// `min-sm` (Milet et al. 2015, §3.2): the minimal shadow frustum of what the camera can see. The
+/// faces of a point light's cube are cropped, and left out where no receiver is in view.
+/// @throws bad_input when the light does not reach the scene.
+light_maps minimal_maps(const scene& world, const warpshadow::frustum<double>& camera,
+                        const light_view& view, int map_size, light_memory& memory);
+
+/// `stable`: the fit whose texels stay where they are while the camera turns and moves; sunlight.
+light_maps stable_maps(const scene& world, const warpshadow::frustum<double>& camera,
+                       const light_view& view, int map_size);
+
+} // namespace lab

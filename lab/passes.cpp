@@ -1,0 +1,412 @@
+#include "lab/passes.hpp"
+
+#include "lab/shaders.hpp"
+
+#include <warpshadow/smoothing.hpp>
+#include <warpshadow/warp_build.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace lab {
+
+namespace ws = warpshadow;
+
+namespace {
+
+/// When the shadow pass cuts an edge: always above this share of the map (the finest of Rosen
+/// 2012), never below so many texels, and in between when the warp bends it by more than the last.
+constexpr double always_cut_share = 0.01;
+constexpr double never_cut_texels = 0.5;
+constexpr double bend_texels = 1.0;
+
+constexpr std::size_t map_triangle_bytes = 48;
+
+/// Mirror of `light_buffer` in shaders/light.glsl.
+struct light_block {
+    glm::vec4 position{0.0f};
+    glm::vec4 axis{0.0f};
+    glm::ivec4 choice{0};
+};
+
+/// Mirror of `light_map` in shaders/light.glsl.
+struct map_block {
+    glm::mat4 full{1.0f};
+    glm::mat4 matrix{1.0f};
+    glm::mat4 normal{1.0f};
+};
+
+constexpr std::size_t most_maps = 8;
+
+/// Texture units and buffer bindings that several shaders share.
+enum unit : GLuint {
+    unit_position = 0,
+    unit_normal = 1,
+    unit_rows = 2,
+    unit_columns = 3,
+    unit_centres = 4,
+    unit_map = 5
+};
+enum binding : GLuint {
+    on_light = 4,
+    on_desired_view = 5,
+    on_counts = 6,
+    on_ready = 7,
+    on_waiting = 8,
+    on_next = 9
+};
+
+void wait_for_writes() {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+} // namespace
+
+g_buffer::g_buffer(glm::ivec2 view)
+    : position(GL_RGBA32F, view.x, view.y), normal(GL_RGBA32F, view.x, view.y),
+      depth(GL_DEPTH_COMPONENT32F, view.x, view.y), target({&position, &normal}, &depth) {}
+
+map_resources::tables::tables(int size)
+    : counts(GL_R32UI, size, size), rows(GL_R32F, size + 1, size), columns(GL_R32F, size + 1, size),
+      centres(GL_RG32F, size, size) {}
+
+map_resources::map_resources(int map_size, std::size_t maps, bool warped)
+    : size(map_size), depth(GL_DEPTH_COMPONENT32F, map_size, map_size, static_cast<int>(maps)) {
+    for (std::size_t i = 0; i < maps; ++i) {
+        targets.push_back(gl::framebuffer::of_layer(depth, static_cast<int>(i)));
+        desired.emplace_back(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW);
+        if (warped) {
+            warps.emplace_back(size);
+        }
+    }
+}
+
+std::size_t map_resources::bytes() const {
+    std::size_t sum = depth.bytes();
+    for (const tables& each : warps) {
+        sum +=
+            each.counts.bytes() + each.rows.bytes() + each.columns.bytes() + each.centres.bytes();
+    }
+    return sum;
+}
+
+passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
+    : world_(scene_to_show), view_(view_size), library_{gl::glsl_files(), lab_shaders()},
+      mesh_(world_.positions, world_.triangles),
+      normals_(std::span<const glm::vec4>(face_normals())), mask_(GL_R8UI, view_.x, view_.y),
+      light_buffer_(sizeof(light_block) + most_maps * sizeof(map_block), nullptr, GL_DYNAMIC_DRAW),
+      counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW), watch_(gl::best_timing()) {
+    draw_g_buffer_ = link("g_buffer.vert", "g_buffer.frag");
+    draw_plain_ = link("shadow_plain.vert", "empty.frag");
+    draw_warped_ = link("shadow_warped.vert", "shadow_warped.frag");
+    find_desired_view_ = compute("desired_view.comp");
+    crop_ = compute("crop.comp");
+    splat_rows_ = compute("splat_rows.comp");
+    splat_columns_ = compute("splat_columns.comp");
+    sum_columns_ = compute("column_sums.comp");
+    build_axis_ = compute("build_axis.comp");
+    unwarp_centres_ = compute("unwarp_centres.comp");
+    set_up_triangles_ = compute("triangle_setup.comp");
+    cut_triangles_ = compute("triangle_cut.comp");
+    test_plain_ = compute("shadow_test.comp");
+    test_warped_ = compute("shadow_test.comp", {"WARPED"});
+    for (const gl::program* program :
+         {&find_desired_view_, &splat_rows_, &splat_columns_, &test_plain_, &test_warped_}) {
+        program->set("g_position", static_cast<int>(unit_position));
+        program->set("g_normal", static_cast<int>(unit_normal));
+        program->set("shadow_map", static_cast<int>(unit_map));
+    }
+    set_capacity(2 * world_.triangles.size() + 65536, 65536);
+}
+
+std::vector<glm::vec4> passes::face_normals() const {
+    std::vector<glm::vec4> result;
+    result.reserve(world_.triangles.size());
+    for (const glm::uvec3& t : world_.triangles) {
+        const glm::dvec3 a(world_.positions[t.x]);
+        const glm::dvec3 n = glm::cross(glm::dvec3(world_.positions[t.y]) - a,
+                                        glm::dvec3(world_.positions[t.z]) - a);
+        const double length = glm::length(n);
+        // a triangle without area is never drawn; any direction will do
+        result.emplace_back(length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f, 1.0f, 0.0f),
+                            0.0f);
+    }
+    return result;
+}
+
+gl::program passes::link(const char* vertex, const char* fragment) const {
+    return gl::program({{GL_VERTEX_SHADER, library_.load(std::string("lab/") + vertex)},
+                        {GL_FRAGMENT_SHADER, library_.load(std::string("lab/") + fragment)}});
+}
+
+gl::program passes::compute(const char* file, const std::vector<std::string>& defines) const {
+    return gl::program::compute(library_.load(std::string("lab/") + file, defines));
+}
+
+void passes::set_capacity(std::size_t ready_count, std::size_t waiting_count) {
+    ready_ = gl::buffer(ready_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
+    for (gl::buffer& list : waiting_) {
+        list = gl::buffer(waiting_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
+    }
+}
+
+void passes::time_into(std::map<std::string, std::vector<double>>* times) {
+    begin_frame();
+    times_ = times;
+    if (times != nullptr) {
+        order_.clear();
+    }
+}
+
+void passes::begin_frame() {
+    for (const auto& [name, ms] : frame_times_) {
+        (*times_)[name].push_back(ms);
+    }
+    frame_times_.clear();
+}
+
+void passes::note(const char* name, double ms) {
+    frame_times_[name] += ms;
+    if (std::find(order_.begin(), order_.end(), name) == order_.end()) {
+        order_.emplace_back(name);
+    }
+}
+
+void passes::draw_view(g_buffer& seen, const glm::mat4& camera, glm::vec3 eye) {
+    seen.target.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_CULL_FACE);
+    glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    glClearDepth(1.0);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    draw_g_buffer_.use();
+    draw_g_buffer_.set("camera", camera);
+    draw_g_buffer_.set("eye", eye);
+    normals_.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    mesh_.draw();
+}
+
+void passes::use(const g_buffer& seen) {
+    seen.position.bind(unit_position);
+    seen.normal.bind(unit_normal);
+}
+
+void passes::use(const g_buffer& seen, const light_maps& maps, const ws::light<double>& light) {
+    use(seen);
+    light_block block;
+    if (light.kind == ws::light_kind::directional) {
+        block.position = glm::vec4(glm::vec3(-glm::normalize(light.direction)), 0.0f);
+        block.axis = glm::vec4(0.0f, 0.0f, 0.0f, -2.0f);
+    } else {
+        block.position = glm::vec4(glm::vec3(light.position), 1.0f);
+        block.axis = light.kind == ws::light_kind::spot
+                         ? glm::vec4(glm::vec3(glm::normalize(light.direction)),
+                                     static_cast<float>(std::cos(0.5 * light.cone_angle)))
+                         : glm::vec4(0.0f, 0.0f, 0.0f, -2.0f);
+    }
+    block.choice.x = static_cast<int>(maps.choice);
+    light_buffer_.write(0, sizeof block, &block);
+    for (std::size_t i = 0; i < maps.maps.size(); ++i) {
+        map_block map;
+        map.full = map.matrix = glm::mat4(maps.maps[i].matrix);
+        map.normal = glm::mat4(glm::transpose(glm::inverse(maps.maps[i].matrix)));
+        light_buffer_.write(sizeof block + i * sizeof map, sizeof map, &map);
+    }
+    light_buffer_.bind_base(GL_SHADER_STORAGE_BUFFER, on_light);
+}
+
+void passes::select_map(std::size_t index) {
+    for (const gl::program* program :
+         {&draw_plain_, &find_desired_view_, &crop_, &splat_rows_, &splat_columns_,
+          &set_up_triangles_, &cut_triangles_, &test_warped_}) {
+        program->set("map_index", static_cast<int>(index));
+    }
+}
+
+void passes::crop_to_desired_view(map_resources& maps, std::size_t index) {
+    select_map(index);
+    const std::uint32_t infinity =
+        std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+    const std::array<std::uint32_t, 4> empty{infinity, infinity, 0u, 0u};
+    gl::buffer& desired = maps.desired[index];
+    desired.write(0, sizeof empty, empty.data());
+    desired.bind_base(GL_SHADER_STORAGE_BUFFER, on_desired_view);
+    find_desired_view_.dispatch((view_.x + 3) / 4, (view_.y + 3) / 4);
+    wait_for_writes();
+    crop_.set("margin", 0.5f / static_cast<float>(std::max(maps.size - 1, 1)));
+    crop_.dispatch(1);
+    wait_for_writes();
+}
+
+void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts) {
+    map_resources::tables& warp = maps.warps[index];
+    const gl::program& splat = columns ? splat_columns_ : splat_rows_;
+    const gl::texture& table = columns ? warp.columns : warp.rows;
+    timed_pass(columns ? "splat columns" : "splat rows", [&] {
+        warp.counts.clear(glm::uvec4(0u));
+        warp.counts.bind_image(0, GL_READ_WRITE);
+        splat.dispatch(view_.x, view_.y);
+        wait_for_writes();
+    });
+    if (keep_counts) {
+        (columns ? warp.second_counts : warp.first_counts) = warp.counts.read<std::uint32_t>();
+    }
+    timed_pass(columns ? "build columns" : "build rows", [&] {
+        const int size = warp.counts.width();
+        warp.counts.bind_image(0, GL_READ_WRITE);
+        sum_columns_.dispatch(size);
+        wait_for_writes();
+        table.bind_image(1, GL_WRITE_ONLY);
+        const ws::build_options<float> options;
+        build_axis_.set("ws_radius", ws::window_radius(options.window, size));
+        // the device computes nodes in float: four times the floor that rounding once needs
+        build_axis_.set("ws_floor",
+                        std::max(options.floor, 4.0f * ws::smallest_floor<float, float>(size)));
+        build_axis_.use();
+        glDispatchCompute(static_cast<GLuint>(size), 1, 1);
+        wait_for_writes();
+    });
+}
+
+void passes::build_tables(map_resources& maps, std::size_t index, bool keep_counts) {
+    select_map(index);
+    map_resources::tables& warp = maps.warps[index];
+    build_axis(maps, index, false, keep_counts);
+    warp.rows.bind(unit_rows);
+    build_axis(maps, index, true, keep_counts);
+    warp.columns.bind(unit_columns);
+    timed_pass("unwarp centres", [&] {
+        warp.centres.bind_image(0, GL_WRITE_ONLY);
+        unwarp_centres_.dispatch(warp.centres.width(), warp.centres.height());
+        wait_for_writes();
+        warp.centres.bind(unit_centres);
+    });
+}
+
+void passes::draw_plain_map(map_resources& maps, std::size_t index) {
+    select_map(index);
+    maps.targets[index].bind();
+    glClear(GL_DEPTH_BUFFER_BIT);
+    draw_plain_.use();
+    mesh_.draw();
+}
+
+void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count) {
+    select_map(index);
+    const double size = maps.size;
+    const double shortest = never_cut_texels / size;
+    for (const gl::program* program : {&set_up_triangles_, &cut_triangles_}) {
+        program->set("longest", static_cast<float>(always_cut_share));
+        program->set("shortest", static_cast<float>(shortest));
+        program->set("deviation", static_cast<float>(bend_texels / size));
+    }
+    timed_pass("cut triangles", [&] {
+        const triangle_counts none;
+        counters_.write(0, sizeof none, &none);
+        mesh_.positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+        mesh_.indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+        normals_.bind_base(GL_SHADER_STORAGE_BUFFER, 2);
+        counters_.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
+        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
+        waiting_[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
+        const int triangles = static_cast<int>(world_.triangles.size());
+        set_up_triangles_.set("triangle_count", triangles);
+        set_up_triangles_.dispatch(triangles);
+        wait_for_writes();
+        // three halvings, one of each edge, make a triangle half as large; no edge is longer
+        // than the map's diagonal at first
+        const int rounds =
+            3 * static_cast<int>(std::ceil(std::log2(std::sqrt(2.0) / shortest))) + 1;
+        for (int round = 0; round < rounds; ++round) {
+            const std::size_t source = static_cast<std::size_t>(round % 2);
+            const std::uint32_t zero = 0;
+            counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
+                            sizeof zero, &zero);
+            waiting_[source].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
+            waiting_[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
+            cut_triangles_.set("list", static_cast<int>(source));
+            cut_triangles_.set("last_round", static_cast<int>(round + 1 == rounds));
+            cut_triangles_.dispatch(64 * 64);
+            wait_for_writes();
+        }
+    });
+    timed_pass("shadow map", [&] {
+        maps.targets[index].bind();
+        glClear(GL_DEPTH_BUFFER_BIT);
+        draw_warped_.use();
+        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
+        nothing_.bind();
+        counters_.bind(GL_DRAW_INDIRECT_BUFFER);
+        glDrawArraysIndirect(GL_TRIANGLES, nullptr);
+        wait_for_writes();
+    });
+    if (count) {
+        counted_.push_back(counters_.read<triangle_counts>().front());
+    }
+}
+
+void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool warped) {
+    maps.depth.bind(unit_map);
+    mask_.bind_image(0, GL_WRITE_ONLY);
+    if (!warped) {
+        test_plain_.dispatch(view_.x, view_.y);
+    }
+    if (warped && chosen.maps.size() > 1) {
+        mask_.clear(glm::uvec4(1u)); // the background is in no map
+    }
+    // one dispatch per map: tables of several maps do not fit the units; each sample answers once
+    for (std::size_t i = 0; warped && i < chosen.maps.size(); ++i) {
+        if (!chosen.maps[i].used) {
+            continue;
+        }
+        select_map(i);
+        maps.warps[i].rows.bind(unit_rows);
+        maps.warps[i].columns.bind(unit_columns);
+        maps.warps[i].centres.bind(unit_centres);
+        test_warped_.dispatch(view_.x, view_.y);
+    }
+    wait_for_writes();
+}
+
+std::vector<float> passes::draw_depths(const glm::dmat4& matrix, int size) {
+    map_resources whole(size, 1, false);
+    map_block map;
+    map.full = map.matrix = glm::mat4(matrix);
+    light_buffer_.write(sizeof(light_block), sizeof map, &map);
+    draw_plain_map(whole, 0);
+    return whole.depth.read<float>();
+}
+
+bool passes::grow_lists() {
+    const std::size_t ready_count = ready_.bytes() / map_triangle_bytes;
+    const std::size_t waiting_count = waiting_[0].bytes() / map_triangle_bytes;
+    const bool lost = std::any_of(counted_.begin(), counted_.end(),
+                                  [](const triangle_counts& each) { return each.lost > 0; });
+    const bool crowded = std::any_of(counted_.begin(), counted_.end(),
+                                     [](const triangle_counts& each) { return each.crowded > 0; });
+    if ((!lost && !crowded) || ready_count > most_triangles || waiting_count > most_triangles) {
+        return false;
+    }
+    counted_.clear();
+    set_capacity(lost ? 2 * ready_count : ready_count, crowded ? 2 * waiting_count : waiting_count);
+    return true;
+}
+
+std::size_t passes::list_bytes() const {
+    return ready_.bytes() + waiting_[0].bytes() + waiting_[1].bytes();
+}
+
+glm::mat4 passes::matrix_in_use(std::size_t index) const {
+    map_block map;
+    light_buffer_.read(sizeof(light_block) + index * sizeof map, sizeof map, &map);
+    return map.matrix;
+}
+
+std::vector<std::uint8_t> passes::shadowed() const {
+    return mask_.read<std::uint8_t>();
+}
+
+} // namespace lab

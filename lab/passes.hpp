@@ -1,0 +1,148 @@
+// The passes that shadow methods are made of, on the GPU.
+#pragma once
+
+#include "gl/mesh.hpp"
+#include "gl/objects.hpp"
+#include "gl/shader_source.hpp"
+#include "gl/timer.hpp"
+#include "lab/light_maps.hpp"
+#include "lab/scene.hpp"
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lab {
+
+/// What the camera sees: position and face normal per pixel.
+struct g_buffer {
+    explicit g_buffer(glm::ivec2 view);
+    gl::texture position, normal, depth;
+    gl::framebuffer target;
+};
+
+/// Textures and buffers of all maps of one method; their size follows the maps.
+struct map_resources {
+    map_resources(int size, std::size_t maps, bool warped);
+
+    /// Count map and tables of one map.
+    struct tables {
+        explicit tables(int size);
+        gl::texture counts, rows, columns, centres;
+        std::vector<std::uint32_t> first_counts, second_counts; ///< read back where wanted
+    };
+
+    int size;
+    gl::texture depth; ///< one layer per map
+    std::vector<gl::framebuffer> targets;
+    std::vector<gl::buffer> desired; ///< bounds of the desired view per map
+    std::vector<tables> warps;       ///< per map, or none
+    [[nodiscard]] std::size_t bytes() const;
+};
+
+/// Mirror of `triangle_counts` in shaders/triangles.glsl.
+struct triangle_counts {
+    std::uint32_t vertex_count = 0;
+    std::uint32_t instance_count = 1;
+    std::uint32_t first_vertex = 0;
+    std::uint32_t base_instance = 0;
+    std::array<std::uint32_t, 2> waiting{};
+    std::uint32_t lost = 0;
+    std::uint32_t crowded = 0;
+    std::uint32_t uncut = 0;
+    std::uint32_t padding = 0;
+};
+
+/// One scene on the GPU, and the programs that draw its shadows.
+class passes {
+  public:
+    passes(const scene& scene_to_show, glm::ivec2 view_size);
+
+    /// Times passes from now on, or no more with null.
+    void time_into(std::map<std::string, std::vector<double>>* times);
+    /// Names of the timed passes in the order of their first run.
+    [[nodiscard]] const std::vector<std::string>& timed() const { return order_; }
+
+    /// Runs one step, timed if that is asked for; several runs in a frame add up.
+    template <typename Step> void timed_pass(const char* name, Step step) {
+        if (times_ == nullptr) {
+            step();
+            return;
+        }
+        watch_.start();
+        step();
+        note(name, watch_.stop());
+    }
+    /// A new frame begins: times of its passes are kept apart from the last one's.
+    void begin_frame();
+
+    void draw_view(g_buffer& seen, const glm::mat4& camera, glm::vec3 eye);
+    /// Makes these samples and this light the ones that all later passes see.
+    void use(const g_buffer& seen, const light_maps& maps, const warpshadow::light<double>& light);
+    void use(const g_buffer& seen);
+    /// Crops one map to its lit view samples.
+    void crop_to_desired_view(map_resources& maps, std::size_t index);
+    /// Importance of one map, and the functions of both axes.
+    void build_tables(map_resources& maps, std::size_t index, bool keep_counts);
+    void draw_plain_map(map_resources& maps, std::size_t index);
+    /// Cuts the scene's triangles for one map's tables and draws them; `count` reads back how many.
+    void draw_warped_map(map_resources& maps, std::size_t index, bool count);
+    /// Shadow test of all samples in use.
+    void test_shadows(map_resources& maps, const light_maps& chosen, bool warped);
+    /// Only the depths of one map, into a texture of no array; for pictures.
+    std::vector<float> draw_depths(const glm::dmat4& matrix, int size);
+
+    /// Makes the triangle lists large enough for what was counted since the last call; false if
+    /// they were.
+    bool grow_lists();
+    void forget_counts() { counted_.clear(); }
+    /// Of the maps drawn since they were last forgotten.
+    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
+    [[nodiscard]] std::size_t list_bytes() const;
+    /// The matrix of a map after a crop on the device.
+    [[nodiscard]] glm::mat4 matrix_in_use(std::size_t index) const;
+    [[nodiscard]] std::vector<std::uint8_t> shadowed() const;
+
+    [[nodiscard]] gl::stopwatch& watch() { return watch_; }
+    [[nodiscard]] const scene& world() const { return world_; }
+    [[nodiscard]] glm::ivec2 view() const { return view_; }
+
+  private:
+    [[nodiscard]] std::vector<glm::vec4> face_normals() const;
+    [[nodiscard]] gl::program link(const char* vertex, const char* fragment) const;
+    [[nodiscard]] gl::program compute(const char* file,
+                                      const std::vector<std::string>& defines = {}) const;
+    void set_capacity(std::size_t ready_count, std::size_t waiting_count);
+    void note(const char* name, double ms);
+    void select_map(std::size_t index);
+    void build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts);
+
+    static constexpr std::size_t most_triangles = std::size_t{1} << 22;
+
+    const scene& world_;
+    glm::ivec2 view_;
+    gl::shader_library library_;
+    gl::mesh mesh_;
+    gl::buffer normals_;
+    gl::texture mask_;
+    gl::buffer light_buffer_, counters_;
+    gl::buffer ready_;
+    std::array<gl::buffer, 2> waiting_;
+    gl::vertex_array nothing_;
+    gl::program draw_g_buffer_, draw_plain_, draw_warped_;
+    gl::program find_desired_view_, crop_, splat_rows_, splat_columns_, sum_columns_, build_axis_,
+        unwarp_centres_;
+    gl::program set_up_triangles_, cut_triangles_, test_plain_, test_warped_;
+    gl::stopwatch watch_;
+    std::map<std::string, std::vector<double>>* times_ = nullptr;
+    std::map<std::string, double> frame_times_;
+    std::vector<std::string> order_;
+    std::vector<triangle_counts> counted_;
+};
+
+} // namespace lab
