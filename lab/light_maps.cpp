@@ -2,11 +2,16 @@
 
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
+#include <warpshadow/lispsm.hpp>
 #include <warpshadow/stable_fit.hpp>
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
 
 namespace lab {
 
@@ -40,14 +45,17 @@ glm::dmat4 matrix_of(const ws::frustum<double>& camera) {
            ws::view_matrix(camera, ws::clip::opengl);
 }
 
+/// The cone around the pyramid of a cube face.
+ws::light<double> face_beam(const ws::frustum<double>& face) {
+    const double corner = 2.0 * std::atan(std::numbers::sqrt2);
+    return {ws::light_kind::spot, face.eye, face.forward, corner};
+}
+
 /// The part of a cube face that the receivers in view take up; not used if there is none.
 light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
                        const ws::light<double>& light, int face, int map_size) {
     const ws::frustum<double> face_view = face_of(world, light, face);
-    // the cone around the face's pyramid
-    const double corner = 2.0 * std::atan(std::numbers::sqrt2);
-    const ws::light<double> beam{ws::light_kind::spot, light.position, face_view.forward, corner};
-    const ws::focus_result seen = focus_on(world, camera, beam);
+    const ws::focus_result seen = focus_on(world, camera, face_beam(face_view));
     light_map result{matrix_of(face_view), seen.receivers.count > 0};
     if (seen.footprint_count == 0) {
         return result; // nothing in view, or no bounds: the whole face
@@ -196,6 +204,51 @@ light_maps stable_maps(const scene& world, const ws::frustum<double>& camera,
     result.maps.push_back({fit.matrix, true});
     result.flags = fit.flags;
     return result;
+}
+
+light_maps lispsm_maps(const scene& world, const ws::frustum<double>& camera,
+                       const light_view& view) {
+    light_maps result = whole_scene_maps(world, view);
+    for (std::size_t i = 0; i < result.maps.size(); ++i) {
+        light_map& map = result.maps[i];
+        ws::light<double> light = view.light;
+        if (light.kind == ws::light_kind::point) {
+            light = face_beam(face_of(world, light, static_cast<int>(i)));
+        }
+        const ws::focus_result seen = focus_on(world, camera, light);
+        result.flags |= seen.flags;
+        map.used = seen.receivers.count > 0 || view.light.kind != ws::light_kind::point;
+        if (seen.footprint_count == 0) {
+            continue; // no receiver, or no bound for them: the map of everything serves
+        }
+        std::vector<glm::dvec3> body;
+        std::vector<glm::dvec3> casters;
+        for (std::size_t k = 0; k < seen.receivers.count; ++k) {
+            body.emplace_back(seen.receivers.vertices[k]);
+        }
+        for (std::size_t k = 0; k < seen.casters.count; ++k) {
+            casters.emplace_back(seen.casters.vertices[k]);
+        }
+        ws::lispsm_options<double> options;
+        options.casters = casters;
+        const ws::lispsm_result<double> warped =
+            ws::lispsm(camera, light, std::span<const glm::dvec3>(body), ws::clip::opengl, options);
+        result.flags |= warped.flags;
+        if (!ws::any(warped.flags, ws::status::light_inside_body | ws::status::unbounded |
+                                       ws::status::invalid_input | ws::status::out_of_range)) {
+            map.matrix = warped.matrix * glm::translate(glm::dmat4(1.0), -camera.eye);
+        }
+    }
+    return result;
+}
+
+void split_by_depth(light_maps& maps, const ws::frustum<double>& camera,
+                    std::vector<double> splits) {
+    maps.choice = map_choice::view_depth;
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    maps.depth_plane = glm::dvec4(forward, -glm::dot(forward, camera.eye));
+    maps.maps.resize(splits.size() + 1, maps.maps.front());
+    maps.splits = std::move(splits);
 }
 
 } // namespace lab

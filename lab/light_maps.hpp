@@ -4,6 +4,7 @@
 #include "lab/scene.hpp"
 
 #include <warpshadow/focus.hpp>
+#include <warpshadow/projective.hpp>
 #include <warpshadow/shadow_frustum.hpp>
 
 #include <glm/glm.hpp>
@@ -15,8 +16,9 @@ namespace lab {
 
 /// Which of a method's maps a point of the scene is looked up in; mirrored in shaders/light.glsl.
 enum class map_choice {
-    single = 0,   ///< there is one
-    cube_face = 1 ///< the face of the light's cube, in the order of `warpshadow::cube_lookup`
+    single = 0,    ///< there is one
+    cube_face = 1, ///< the face of the light's cube, in the order of `warpshadow::cube_lookup`
+    view_depth = 2 ///< by depth along the view axis, nearest first
 };
 
 /// One shadow map.
@@ -29,13 +31,16 @@ struct light_map {
 struct light_maps {
     std::vector<light_map> maps;
     map_choice choice = map_choice::single;
-    double angle = 0.0; ///< of the map's sides to the axes of the light, radians
+    glm::dvec4 depth_plane{0.0}; ///< view depth of a world position is dot(plane, (p, 1))
+    std::vector<double> splits;  ///< view depths at which the next map begins; one less than maps
+    double angle = 0.0;          ///< of the map's sides to the axes of the light, radians
     warpshadow::status flags = warpshadow::status::ok;
 };
 
 /// What the set-up of one method keeps from frame to frame.
 struct light_memory {
     warpshadow::fit_state fit;
+    std::vector<warpshadow::projective_state<double>> bends; ///< per map
 };
 
 /// Distance from `from` to the farthest corner of a box along an axis of unit length; at least 0.
@@ -65,5 +70,14 @@ light_maps minimal_maps(const scene& world, const warpshadow::frustum<double>& c
 /// `stable`: the fit whose texels stay where they are while the camera turns and moves; sunlight.
 light_maps stable_maps(const scene& world, const warpshadow::frustum<double>& camera,
                        const light_view& view, int map_size);
+
+/// `lispsm` (Wimmer et al. 2004, Scherzer 2005): the body that the camera sees, warped by one
+/// matrix; face by face for a point light.
+light_maps lispsm_maps(const scene& world, const warpshadow::frustum<double>& camera,
+                       const light_view& view);
+
+/// The same map for each of several slices of the view.
+void split_by_depth(light_maps& maps, const warpshadow::frustum<double>& camera,
+                    std::vector<double> splits);
 
 } // namespace lab

@@ -20,25 +20,33 @@ namespace {
 enum class map_base {
     whole_scene, ///< all that the light reaches
     stable,      ///< the ball around the view, on a fixed grid
-    minimal      ///< what the camera can see
+    minimal,     ///< what the camera can see
+    lispsm       ///< the same, warped by one matrix
 };
 
 /// A method as the steps that it takes.
 struct method {
     std::string_view name;
-    map_base base;
-    bool desired_view; ///< crop to the lit view samples
-    bool warp;         ///< tables, and triangles cut for them
+    map_base base = map_base::whole_scene;
+    int partitions = 1;        ///< maps by view depth
+    bool desired_view = false; ///< crop to the lit view samples
+    bool fitted = false;       ///< projective warp fitted to the lit view samples
+    bool warp = false;         ///< tables, and triangles cut for them
 };
 
 constexpr std::array methods{
-    method{"sm", map_base::whole_scene, false, false},
-    method{"stable", map_base::stable, false, false},
-    method{"min-sm", map_base::minimal, false, false},
-    method{"dv", map_base::whole_scene, true, false},
-    method{"min-sm-notw", map_base::minimal, false, true},
-    method{"notw", map_base::whole_scene, true, true},
-    method{"notw-nodv", map_base::whole_scene, false, true},
+    method{.name = "sm"},
+    method{.name = "stable", .base = map_base::stable},
+    method{.name = "min-sm", .base = map_base::minimal},
+    method{.name = "dv", .desired_view = true},
+    method{.name = "lispsm", .base = map_base::lispsm},
+    method{.name = "fitted", .desired_view = true, .fitted = true},
+    method{.name = "fitted-2", .partitions = 2, .desired_view = true, .fitted = true},
+    method{.name = "min-sm-notw", .base = map_base::minimal, .warp = true},
+    method{.name = "lispsm-notw", .base = map_base::lispsm, .desired_view = true, .warp = true},
+    method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
+    method{.name = "notw", .desired_view = true, .warp = true},
+    method{.name = "notw-nodv", .warp = true},
 };
 
 constexpr auto names = [] {
@@ -76,6 +84,14 @@ double lit_cosine(const ws::light<double>& light, glm::dvec3 world, glm::dvec3 n
     return in_cone ? glm::dot(normal, l) : 0.0;
 }
 
+/// Cells along a side of the histogram that a projective warp is fitted to.
+constexpr int histogram_cells = 64;
+
+/// Texels along a side of each map: all partitions together have those of one map.
+int size_of_maps(const method& how, int map_size) {
+    return std::max(1, static_cast<int>(std::lround(map_size / std::sqrt(how.partitions))));
+}
+
 int used_maps(const light_maps& chosen) {
     return static_cast<int>(std::count_if(chosen.maps.begin(), chosen.maps.end(),
                                           [](const light_map& each) { return each.used; }));
@@ -97,25 +113,38 @@ struct renderer::state {
             return whole_scene_maps(world, request.light);
         }
         const ws::frustum<double> camera = camera_frustum(world, request.camera, gpu.view());
-        return how.base == map_base::stable
-                   ? stable_maps(world, camera, request.light, request.map_size)
+        if (how.base == map_base::stable) {
+            return stable_maps(world, camera, request.light, request.map_size);
+        }
+        return how.base == map_base::lispsm
+                   ? lispsm_maps(world, camera, request.light)
                    : minimal_maps(world, camera, request.light, request.map_size, memory);
     }
 
     /// One frame from the G-buffer to the shadow test.
     light_maps frame(const method& how, const view_request& request, light_memory& memory,
                      map_resources& maps, bool count) {
-        const glm::mat4 camera =
-            camera_matrix(camera_frustum(gpu.world(), request.camera, gpu.view()));
+        const ws::frustum<double> camera = camera_frustum(gpu.world(), request.camera, gpu.view());
         light_maps chosen = choose_maps(how, request, memory);
-        gpu.timed_pass("g-buffer",
-                       [&] { gpu.draw_view(seen, camera, glm::vec3(request.camera.eye)); });
+        gpu.timed_pass("g-buffer", [&] {
+            gpu.draw_view(seen, camera_matrix(camera), glm::vec3(request.camera.eye));
+        });
         gpu.use(seen, chosen, request.light.light);
+        if (how.partitions > 1) {
+            gpu.timed_pass("depth range", [&] { split(how, camera, chosen); });
+            gpu.use(seen, chosen, request.light.light);
+        }
+        memory.bends.resize(chosen.maps.size());
         for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
             if (!chosen.maps[i].used) {
                 continue;
             }
             if (how.desired_view) {
+                gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
+            }
+            if (how.fitted) {
+                gpu.timed_pass("fit", [&] { fit(i, memory.bends[i], chosen.flags); });
+                // the fit knows the samples to a cell of its histogram; the crop knows them exactly
                 gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
             }
             if (how.warp) {
@@ -127,6 +156,33 @@ struct renderer::state {
         }
         gpu.timed_pass("shadow test", [&] { gpu.test_shadows(maps, chosen, how.warp); });
         return chosen;
+    }
+
+    /// Splits the depths of the lit samples in equal ratios (practical split of quality alone).
+    void split(const method& how, const ws::frustum<double>& camera, light_maps& chosen) {
+        const glm::dvec2 range = gpu.depth_range(camera).value_or(
+            glm::dvec2(camera.volume.near_distance, camera.volume.far_distance));
+        const double nearest = std::max(range.x, camera.volume.near_distance);
+        std::vector<double> splits;
+        for (int i = 1; i < how.partitions; ++i) {
+            splits.push_back(nearest * std::pow(std::max(range.y / nearest, 1.0),
+                                                static_cast<double>(i) / how.partitions));
+        }
+        split_by_depth(chosen, camera, std::move(splits));
+    }
+
+    /// Fits a projective warp to the lit samples of one map.
+    void fit(std::size_t index, ws::projective_state<double>& bend, ws::status& flags) {
+        const std::vector<std::uint32_t> counts = gpu.histogram(index, histogram_cells);
+        const auto begin = std::chrono::steady_clock::now();
+        const ws::projective_result<double> fitted = ws::fit_projective<double>(
+            std::span<const std::uint32_t>(counts), histogram_cells, histogram_cells, {}, bend);
+        const std::chrono::duration<double, std::micro> elapsed =
+            std::chrono::steady_clock::now() - begin;
+        fit_us.push_back(elapsed.count());
+        bend = fitted.state;
+        flags |= fitted.flags;
+        gpu.warp_map(index, ws::projective_matrix(fitted.map, ws::clip::opengl));
     }
 
     /// Guards of all steps of the last frame.
@@ -198,6 +254,7 @@ struct renderer::state {
 
     passes gpu;
     g_buffer seen, seen_before;
+    std::vector<double> fit_us; ///< times of the projective fit alone
     bool remembers = false;
     // kept while a camera moves, so that frames do not begin with allocations
     std::map<std::string, map_resources, std::less<>> moving_maps;
@@ -239,6 +296,9 @@ std::optional<std::string> renderer::why_not(std::string_view name, const light_
     if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
         return "a texel of a fixed size has no meaning for a light with a position";
     }
+    if (light.light.kind == ws::light_kind::point && how.partitions > 1) {
+        return "partitions of the view and faces of a cube do not go together";
+    }
     if (light.light.kind == ws::light_kind::point && !follows_the_view(how)) {
         return "a point light shines all around and has no single map";
     }
@@ -264,12 +324,14 @@ method_result renderer::run(std::string_view name, const view_request& request) 
 
     light_memory memory;
     light_maps chosen = s.choose_maps(how, request, memory);
-    map_resources maps(request.map_size, chosen.maps.size(), how.warp);
+    const std::size_t map_count = chosen.maps.size() * static_cast<std::size_t>(how.partitions);
+    map_resources maps(size_of_maps(how, request.map_size), map_count, how.warp);
     const auto frame = [&](bool count) {
         light_memory fresh;
         chosen = s.frame(how, request, fresh, maps, count);
     };
 
+    s.fit_us.clear();
     // the first frame warms up and, with tables, finds how long the lists must be
     do {
         s.gpu.forget_counts();
@@ -290,6 +352,9 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         s.gpu.begin_frame();
     }
     s.gpu.time_into(nullptr);
+    if (how.fitted) {
+        result.cpu_setup_us.emplace_back("fit", median(s.fit_us));
+    }
     gl::check("shadow methods");
 
     result.frame_ms_median = median(frames);
@@ -324,7 +389,10 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     if (found == s.moving_maps.end()) {
         light_memory unused;
         const std::size_t count = s.choose_maps(how, request, unused).maps.size();
-        found = s.moving_maps.try_emplace(key, request.map_size, count, how.warp).first;
+        found = s.moving_maps
+                    .try_emplace(key, size_of_maps(how, request.map_size),
+                                 count * static_cast<std::size_t>(how.partitions), how.warp)
+                    .first;
         light_memory copy = memory.light;
         s.frame(how, request, copy, found->second, false); // warms up
     }

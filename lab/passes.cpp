@@ -29,6 +29,8 @@ struct light_block {
     glm::vec4 position{0.0f};
     glm::vec4 axis{0.0f};
     glm::ivec4 choice{0};
+    glm::vec4 depth_plane{0.0f};
+    std::array<float, 8> splits{};
 };
 
 /// Mirror of `light_map` in shaders/light.glsl.
@@ -57,6 +59,14 @@ enum binding : GLuint {
     on_waiting = 8,
     on_next = 9
 };
+
+/// Sets bounds of view samples to those of no sample.
+void clear_bounds(gl::buffer& bounds) {
+    const std::uint32_t infinity =
+        std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+    const std::array<std::uint32_t, 4> empty{infinity, infinity, 0u, 0u};
+    bounds.write(0, sizeof empty, empty.data());
+}
 
 void wait_for_writes() {
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -97,11 +107,13 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
       mesh_(world_.positions, world_.triangles),
       normals_(std::span<const glm::vec4>(face_normals())), mask_(GL_R8UI, view_.x, view_.y),
       light_buffer_(sizeof(light_block) + most_maps * sizeof(map_block), nullptr, GL_DYNAMIC_DRAW),
-      counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW), watch_(gl::best_timing()) {
+      counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW),
+      depths_(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW), watch_(gl::best_timing()) {
     draw_g_buffer_ = link("g_buffer.vert", "g_buffer.frag");
     draw_plain_ = link("shadow_plain.vert", "empty.frag");
     draw_warped_ = link("shadow_warped.vert", "shadow_warped.frag");
     find_desired_view_ = compute("desired_view.comp");
+    find_depth_range_ = compute("depth_range.comp");
     crop_ = compute("crop.comp");
     splat_rows_ = compute("splat_rows.comp");
     splat_columns_ = compute("splat_columns.comp");
@@ -112,8 +124,8 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     cut_triangles_ = compute("triangle_cut.comp");
     test_plain_ = compute("shadow_test.comp");
     test_warped_ = compute("shadow_test.comp", {"WARPED"});
-    for (const gl::program* program :
-         {&find_desired_view_, &splat_rows_, &splat_columns_, &test_plain_, &test_warped_}) {
+    for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &splat_rows_,
+                                       &splat_columns_, &test_plain_, &test_warped_}) {
         program->set("g_position", static_cast<int>(unit_position));
         program->set("g_normal", static_cast<int>(unit_normal));
         program->set("shadow_map", static_cast<int>(unit_map));
@@ -208,12 +220,13 @@ void passes::use(const g_buffer& seen, const light_maps& maps, const ws::light<d
                          : glm::vec4(0.0f, 0.0f, 0.0f, -2.0f);
     }
     block.choice.x = static_cast<int>(maps.choice);
+    block.choice.y = static_cast<int>(maps.maps.size());
+    block.depth_plane = glm::vec4(maps.depth_plane);
+    std::transform(maps.splits.begin(), maps.splits.end(), block.splits.begin(),
+                   [](double depth) { return static_cast<float>(depth); });
     light_buffer_.write(0, sizeof block, &block);
     for (std::size_t i = 0; i < maps.maps.size(); ++i) {
-        map_block map;
-        map.full = map.matrix = glm::mat4(maps.maps[i].matrix);
-        map.normal = glm::mat4(glm::transpose(glm::inverse(maps.maps[i].matrix)));
-        light_buffer_.write(sizeof block + i * sizeof map, sizeof map, &map);
+        write_map(i, maps.maps[i].matrix);
     }
     light_buffer_.bind_base(GL_SHADER_STORAGE_BUFFER, on_light);
 }
@@ -228,17 +241,55 @@ void passes::select_map(std::size_t index) {
 
 void passes::crop_to_desired_view(map_resources& maps, std::size_t index) {
     select_map(index);
-    const std::uint32_t infinity =
-        std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
-    const std::array<std::uint32_t, 4> empty{infinity, infinity, 0u, 0u};
     gl::buffer& desired = maps.desired[index];
-    desired.write(0, sizeof empty, empty.data());
+    clear_bounds(desired);
     desired.bind_base(GL_SHADER_STORAGE_BUFFER, on_desired_view);
     find_desired_view_.dispatch((view_.x + 3) / 4, (view_.y + 3) / 4);
     wait_for_writes();
     crop_.set("margin", 0.5f / static_cast<float>(std::max(maps.size - 1, 1)));
     crop_.dispatch(1);
     wait_for_writes();
+}
+
+std::optional<glm::dvec2> passes::depth_range(const ws::frustum<double>& camera) {
+    const glm::dvec3 forward = glm::normalize(camera.forward);
+    const double far_distance = camera.volume.far_distance;
+    clear_bounds(depths_);
+    depths_.bind_base(GL_SHADER_STORAGE_BUFFER, on_desired_view);
+    find_depth_range_.set(
+        "share_of_far",
+        glm::vec4(glm::dvec4(forward, -glm::dot(forward, camera.eye)) / far_distance));
+    find_depth_range_.dispatch((view_.x + 3) / 4, (view_.y + 3) / 4);
+    wait_for_writes();
+    const std::vector<float> found = depths_.read<float>();
+    if (!(found[0] <= found[2])) {
+        return std::nullopt;
+    }
+    return glm::dvec2(found[0], found[2]) * far_distance;
+}
+
+std::vector<std::uint32_t> passes::histogram(std::size_t index, int size) {
+    select_map(index);
+    if (histogram_.width() != size) {
+        histogram_ = gl::texture(GL_R32UI, size, size);
+    }
+    histogram_.clear(glm::uvec4(0u));
+    histogram_.bind_image(0, GL_READ_WRITE);
+    splat_rows_.dispatch(view_.x, view_.y);
+    wait_for_writes();
+    return histogram_.read<std::uint32_t>();
+}
+
+void passes::warp_map(std::size_t index, const glm::dmat4& warp) {
+    const glm::dmat4 matrix = warp * glm::dmat4(matrix_in_use(index));
+    write_map(index, matrix);
+}
+
+void passes::write_map(std::size_t index, const glm::dmat4& matrix) {
+    map_block map;
+    map.full = map.matrix = glm::mat4(matrix);
+    map.normal = glm::mat4(glm::transpose(glm::inverse(matrix)));
+    light_buffer_.write(sizeof(light_block) + index * sizeof map, sizeof map, &map);
 }
 
 void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts) {
@@ -373,9 +424,7 @@ void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool wa
 
 std::vector<float> passes::draw_depths(const glm::dmat4& matrix, int size) {
     map_resources whole(size, 1, false);
-    map_block map;
-    map.full = map.matrix = glm::mat4(matrix);
-    light_buffer_.write(sizeof(light_block), sizeof map, &map);
+    write_map(0, matrix);
     draw_plain_map(whole, 0);
     return whole.depth.read<float>();
 }

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,12 @@ class passes {
     void use(const g_buffer& seen);
     /// Crops one map to its lit view samples.
     void crop_to_desired_view(map_resources& maps, std::size_t index);
+    /// Least and largest view depth of the lit samples; nothing when there are none.
+    std::optional<glm::dvec2> depth_range(const warpshadow::frustum<double>& camera);
+    /// Histogram of the lit samples of one map, `size` cells along a side.
+    std::vector<std::uint32_t> histogram(std::size_t index, int size);
+    /// Puts a matrix before that of a map, as it is after a crop.
+    void warp_map(std::size_t index, const glm::dmat4& warp);
     /// Importance of one map, and the functions of both axes.
     void build_tables(map_resources& maps, std::size_t index, bool keep_counts);
     void draw_plain_map(map_resources& maps, std::size_t index);
@@ -120,6 +127,7 @@ class passes {
     void set_capacity(std::size_t ready_count, std::size_t waiting_count);
     void note(const char* name, double ms);
     void select_map(std::size_t index);
+    void write_map(std::size_t index, const glm::dmat4& matrix);
     void build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts);
 
     static constexpr std::size_t most_triangles = std::size_t{1} << 22;
@@ -130,13 +138,14 @@ class passes {
     gl::mesh mesh_;
     gl::buffer normals_;
     gl::texture mask_;
-    gl::buffer light_buffer_, counters_;
+    gl::buffer light_buffer_, counters_, depths_;
+    gl::texture histogram_;
     gl::buffer ready_;
     std::array<gl::buffer, 2> waiting_;
     gl::vertex_array nothing_;
     gl::program draw_g_buffer_, draw_plain_, draw_warped_;
-    gl::program find_desired_view_, crop_, splat_rows_, splat_columns_, sum_columns_, build_axis_,
-        unwarp_centres_;
+    gl::program find_desired_view_, find_depth_range_, crop_, splat_rows_, splat_columns_,
+        sum_columns_, build_axis_, unwarp_centres_;
     gl::program set_up_triangles_, cut_triangles_, test_plain_, test_warped_;
     gl::stopwatch watch_;
     std::map<std::string, std::vector<double>>* times_ = nullptr;

@@ -13,7 +13,9 @@ layout(std430, binding = 4) buffer light_buffer
 {
     vec4 light_position; // xyz and w = 1, or the direction towards the sun and w = 0
     vec4 light_axis;     // xyz the spot's axis, w the cosine of half its angle; others (0, 0, 0, -2)
-    ivec4 light_choice;  // x: map_choice
+    ivec4 light_choice;  // x: map_choice, y: number of maps
+    vec4 depth_plane;    // view depth of a world position is dot(plane, vec4(p, 1))
+    vec4 splits[2];      // view depths at which the next map begins
     light_map light_maps[];
 };
 
@@ -38,5 +40,15 @@ float lit_cosine(vec3 world, vec3 normal)
 // The map in which a point is looked up.
 int map_of(vec3 world)
 {
-    return light_choice.x == 1 ? max(ws_cube_lookup(world - light_position.xyz).face, 0) : 0;
+    if (light_choice.x == 1) {
+        return max(ws_cube_lookup(world - light_position.xyz).face, 0);
+    }
+    int map = 0;
+    if (light_choice.x == 2) {
+        float depth = dot(depth_plane, vec4(world, 1.0));
+        for (int i = 0; i + 1 < light_choice.y; ++i) {
+            map += depth >= splits[i / 4][i % 4] ? 1 : 0;
+        }
+    }
+    return map;
 }

@@ -20,6 +20,7 @@ bool lit_sample(ivec2 pixel, mat4 clip_from_world, out vec2 p)
     return clip.w > 0.0;
 }
 
+#ifndef OWN_VIEW_SAMPLE
 bool ws_view_sample(ivec2 pixel, out vec2 p)
 {
 #ifdef FULL_MAP
@@ -28,3 +29,4 @@ bool ws_view_sample(ivec2 pixel, out vec2 p)
     return lit_sample(pixel, light_matrix, p);
 #endif
 }
+#endif

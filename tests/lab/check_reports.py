@@ -13,8 +13,9 @@ import sys
 from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-METHODS = ["sm", "stable", "min-sm", "dv", "min-sm-notw", "notw", "notw-nodv"]
-NOT_FOR_POINTS = ["sm", "stable", "notw-nodv"]
+METHODS = ["sm", "stable", "min-sm", "dv", "lispsm", "fitted", "fitted-2", "min-sm-notw",
+           "lispsm-notw", "fitted-notw", "notw", "notw-nodv"]
+NOT_FOR_POINTS = ["sm", "stable", "fitted-2", "notw-nodv"]
 SMALL = ["--view", "96x64", "--repeat", "2"]
 RUN_KEYS = {
     "scene", "camera", "light", "method", "map", "view", "samples", "wrong_pixel_ratio",
@@ -103,7 +104,8 @@ def check_results(results):
         if entry["method"] == "raytraced":
             assert entry["map"] == 0 and not wrong and not entry["grazing"]["wrong_pixel_ratio"]
         else:
-            assert entry["bytes"] >= 4 * entry["map"] ** 2, "at least the depth of the map"
+            # partitions share the texels of one map, but for the rounding of their sides
+            assert entry["bytes"] >= 3.9 * entry["map"] ** 2, "at least the depth of the map"
 
 
 def methods_of(results):
