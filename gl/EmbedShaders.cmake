@@ -37,6 +37,8 @@ if(CMAKE_SCRIPT_MODE_FILE)
     endif()
     file(WRITE "${OUTPUT}"
 "// Written by gl/EmbedShaders.cmake.
+// Compilers take longer strings than the standard asks for.
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"
 #include \"gl/shader_source.hpp\"
 
 #include <array>

@@ -1,7 +1,10 @@
 // Building warp tables from importance: the second half of Milet et al. 2015, §3.
 #pragma once
 
+#include <warpshadow/build_options.hpp>
+#include <warpshadow/detail/axis_bands.hpp>
 #include <warpshadow/importance.hpp>
+#include <warpshadow/second_axis.hpp>
 #include <warpshadow/smoothing.hpp>
 #include <warpshadow/warp.hpp>
 
@@ -24,24 +27,6 @@ template <typename T, typename Node = T> struct table_span {
     constexpr operator table_view<T, Node>() const { // NOLINT(google-explicit-constructor)
         return {nodes, cells, rows};
     }
-};
-
-/// How tables are built. The defaults suit outdoor and indoor scenes alike.
-template <typename T> struct build_options {
-    /// Width of the smoothing window across functions, as a share of their number. Wide windows
-    /// make neighbouring functions alike, which the rasteriser's straight edges need; a share of 2
-    /// makes all equal (rectilinear warping).
-    T window = T(0.12);
-    /// Density floor ε: no part of the map shrinks below this share of its uniform extent.
-    T floor = T(0.2);
-};
-
-/// What building one axis met.
-template <typename T> struct build_result {
-    std::uint64_t samples = 0; ///< sum of all counts
-    int empty_rows = 0;        ///< functions without a sample in their window: the identity
-    T floor = T(0);            ///< the density floor that was used
-    status flags = status::ok; ///< empty_importance, empty_rows, floor_raised, out_of_range, …
 };
 
 /// Smallest density floor with which stored functions still increase strictly.
@@ -87,80 +72,170 @@ T warp_node(Count before, Count total, int k, int cells, T floor) {
     return x + (T(1) - floor) * ((excess - fraction) / T(total));
 }
 
+/// Smallest density floor with which `unwarp` finds its way back to a share of a texel.
+///
+/// Rounding of a warped position is magnified by 1 / ε on the way back: w · u / ε texels of w.
+/// @tparam Node   stored type
+/// @param  cells  texels of the map along the axis, positive
+/// @param  texels what is allowed to be lost, positive
+template <typename T, typename Node> T density_floor(int cells, T texels) {
+    const T lost = T(cells) * T(0.5) * std::numeric_limits<T>::epsilon() / texels;
+    const T smallest = smallest_floor<T, Node>(cells);
+    return lost > smallest ? (lost < T(1) ? lost : T(1)) : smallest;
+}
+
+namespace detail {
+
+/// Density floor, window and shear limit as they can be used.
+template <typename T, typename Node>
+build_options<T> checked_options(const build_options<T>& options, int cells, int rows,
+                                 status& flags) {
+    const auto is_nan = [](T x) { return !(x >= T(0)) && !(x < T(0)); };
+    build_options<T> used = options;
+    if (!(options.floor >= T(0) && options.floor <= T(1))) {
+        used.floor = is_nan(options.floor)  ? build_options<T>{}.floor
+                     : options.floor < T(0) ? T(0)
+                                            : T(1);
+        flags |= is_nan(options.floor) ? status::invalid_input : status::out_of_range;
+    }
+    if (!(options.shear >= T(0))) {
+        used.shear = is_nan(options.shear) ? build_options<T>{}.shear : T(0);
+        flags |= is_nan(options.shear) ? status::invalid_input : status::out_of_range;
+    }
+    T smallest = smallest_floor<T, Node>(cells);
+    if (std::is_same_v<Node, double> && used.shear < std::numeric_limits<T>::infinity()) {
+        smallest *= T(2); // mixing rounds once more
+    }
+    if (used.floor < smallest) {
+        // storage too coarse for any floor below 1 leaves nothing but the identity
+        used.floor = smallest < T(1) ? smallest : T(1);
+        flags |= status::floor_raised;
+    }
+    if (options.radius >= 0) {
+        used.radius = options.radius;
+        return used;
+    }
+    if (!(options.window >= T(0) && options.window <= T(2))) {
+        used.window = is_nan(options.window) ? build_options<T>{}.window : options.window;
+        flags |= is_nan(options.window) ? status::invalid_input : status::out_of_range;
+    }
+    used.radius = window_radius(used.window, rows);
+    return used;
+}
+
+/// Builds all bands of an axis; the result does not depend on their number.
+template <int Passes, typename T, typename Node, typename Parallel>
+band_result build_bands(const axis_job& job, double shear, std::span<std::uint64_t> scratch,
+                        std::span<Node> nodes, const Parallel& parallel) {
+    const auto width = static_cast<std::size_t>(job.counts.width);
+    const int rows = job.counts.height;
+    const bool limited = shear < std::numeric_limits<double>::infinity();
+    const common_nodes common{scratch.first(limited ? width : 0)};
+    const std::span<std::uint64_t> memory = scratch.subspan(limited ? width : 0);
+    const std::size_t share = width * (box_sums<Passes>::memory + (limited ? 1 : 0));
+    const std::size_t room = memory.size() / share;
+    int bands = room < std::size_t(most_bands) ? static_cast<int>(room) : most_bands;
+    bands = bands < rows ? bands : rows;
+    band_result results[most_bands];
+
+    // calls work(first, last, memory, result) for each band
+    const auto for_bands = [&](const auto& work) {
+        for (int band = 0; band < bands; ++band) {
+            results[band] = band_result{};
+        }
+        parallel(bands, [&](int band) {
+            const auto first_of = [&](int b) {
+                return static_cast<int>(std::int64_t(rows) * b / bands);
+            };
+            work(first_of(band), first_of(band + 1),
+                 memory.subspan(static_cast<std::size_t>(band) * share, share), results[band]);
+        });
+        band_result all;
+        for (int band = 0; band < bands; ++band) {
+            all.samples += results[band].samples;
+            all.empty_rows += results[band].empty_rows;
+            all.mix = all.mix > results[band].mix ? all.mix : results[band].mix;
+            all.too_large = all.too_large || results[band].too_large;
+        }
+        return all;
+    };
+
+    double mix = 0.0;
+    if (limited) {
+        find_common(job, common);
+        mix =
+            for_bands([&](int first, int last, std::span<std::uint64_t> own, band_result& result) {
+                measure_band<Passes>(job, first, last, shear, common, own, result);
+            }).mix;
+        // so that rounding cannot leave the limit
+        mix = mix > 0.0 ? 1.0 - (1.0 - mix) * (1.0 - 0x1p-40) : 0.0;
+    }
+    if constexpr (Passes == 1 && std::is_same_v<Node, float>) {
+        if (!(mix > 0.0)) {
+            const band_result all = for_bands(
+                [&](int first, int last, std::span<std::uint64_t> own, band_result& result) {
+                    write_band_fast(job, first, last, own, nodes, result);
+                });
+            if (!all.too_large) {
+                return all;
+            }
+        }
+    }
+    band_result all =
+        for_bands([&](int first, int last, std::span<std::uint64_t> own, band_result& result) {
+            write_band<Passes, Node>(job, first, last, mix, common, own, nodes, result);
+        });
+    all.mix = mix;
+    return all;
+}
+
+} // namespace detail
+
 /// Builds the functions of one axis from a count map: one per row, smoothed across rows.
 ///
-/// The rows of `out` are the rows of the map. Sums are 64-bit integers and nodes are rounded once:
-/// each function increases, starts at exactly 0 and ends at exactly 1.
-/// @param counts  importance; `fits(counts)`, and of the size of `out`
-/// @param options window and floor; out of range or NaN is clamped or replaced by the default
-/// @param scratch memory for `counts.width` sums
-/// @param out     functions
-/// @return        buffer_too_small, and nothing written, if a size does not match
-template <typename T, typename Node>
+/// The rows of `out` are the rows of the map, whatever its size: a grid of 64² or 128² functions
+/// serves a shadow map of any number of texels. Sums are 64-bit integers and nodes are rounded
+/// once: each function increases, starts at exactly 0 and ends at exactly 1.
+/// @param counts   importance; `fits(counts)`, and of the size of `out`
+/// @param options  window, floor, shear limit; out of range or NaN is clamped or replaced by the
+///                 default
+/// @param scratch  `scratch_size(counts.width, options)` numbers; with memory for several bands,
+///                 as many are built at once
+/// @param out      functions
+/// @param parallel parallel-for, see `serial_for`; the result is the same to the bit with any
+/// @return         buffer_too_small, and nothing written, if a size does not match
+template <typename T, typename Node, typename Parallel = serial_for>
 build_result<T> build_axis(const count_view& counts, const build_options<T>& options,
-                           std::span<std::uint64_t> scratch, const table_span<T, Node>& out) {
+                           std::span<std::uint64_t> scratch, const table_span<T, Node>& out,
+                           const Parallel& parallel = Parallel{}) {
     build_result<T> result;
     const std::size_t stride = static_cast<std::size_t>(out.cells) + 1;
     if (!fits(counts) || out.cells != counts.width || out.rows != counts.height ||
-        scratch.size() < static_cast<std::size_t>(counts.width) ||
+        scratch.size() < scratch_size(counts.width, options) ||
         out.nodes.size() < static_cast<std::size_t>(out.rows) * stride) {
         result.flags = status::buffer_too_small;
         return result;
     }
-
-    result.floor = options.floor;
-    if (!(options.floor >= T(0) && options.floor <= T(1))) {
-        const bool is_nan = !(options.floor >= T(0)) && !(options.floor < T(0));
-        result.floor = is_nan ? build_options<T>{}.floor : options.floor < T(0) ? T(0) : T(1);
-        result.flags |= is_nan ? status::invalid_input : status::out_of_range;
+    const build_options<T> used =
+        detail::checked_options<T, Node>(options, out.cells, out.rows, result.flags);
+    result.floor = used.floor;
+    result.radius = used.radius;
+    detail::axis_job job{counts, used.radius, 0, double(used.floor)};
+    if (used.shape != window_shape::box) {
+        job.shift = window_shift(detail::samples_in(counts, 0, counts.height), used.radius,
+                                 counts.height, used.shape);
+        result.flags |= job.shift > 0 ? status::out_of_range : status::ok;
     }
-    const T smallest = smallest_floor<T, Node>(out.cells);
-    if (result.floor < smallest) {
-        // storage too coarse for any floor below 1 leaves nothing but the identity
-        result.floor = smallest < T(1) ? smallest : T(1);
-        result.flags |= status::floor_raised;
-    }
-    T share = options.window;
-    if (!(share >= T(0) && share <= T(2))) {
-        const bool is_nan = !(share >= T(0)) && !(share < T(0));
-        share = is_nan ? build_options<T>{}.window : share; // window_radius clamps
-        result.flags |= is_nan ? status::invalid_input : status::out_of_range;
-    }
-
-    row_window window(counts, window_radius(share, counts.height), scratch);
-    for (int row = 0; row < out.rows; ++row) {
-        const std::span<Node> nodes =
-            out.nodes.subspan(static_cast<std::size_t>(row) * stride, stride);
-        const std::span<const std::uint64_t> sums = window.sums();
-        const std::uint64_t total = window.total();
-        result.empty_rows += total == 0 ? 1 : 0;
-        std::uint64_t before = 0;
-        double previous = 0.0;
-        for (int k = 0; k <= out.cells; ++k) {
-            double node = warp_node<double>(before, total, k, out.cells, double(result.floor));
-            // rounding may undo an increment that is as small as the rounding itself
-            node = node < previous ? previous : node > 1.0 ? 1.0 : node;
-            previous = node;
-            if constexpr (std::is_integral_v<Node>) {
-                nodes[static_cast<std::size_t>(k)] = static_cast<Node>(
-                    std::floor(node * double(std::numeric_limits<Node>::max()) + 0.5));
-            } else {
-                nodes[static_cast<std::size_t>(k)] = static_cast<Node>(node);
-            }
-            if (k < out.cells) {
-                before += sums[static_cast<std::size_t>(k)];
-            }
-        }
-        if (row + 1 < out.rows) {
-            window.advance();
-        }
-    }
-
-    for (std::size_t i = 0;
-         i < static_cast<std::size_t>(counts.width) * static_cast<std::size_t>(counts.height);
-         ++i) {
-        result.samples += counts.counts[i];
-    }
+    const double shear = double(used.shear);
+    const detail::band_result bands =
+        used.shape == window_shape::box
+            ? detail::build_bands<1, T, Node>(job, shear, scratch, out.nodes, parallel)
+        : used.shape == window_shape::tent
+            ? detail::build_bands<2, T, Node>(job, shear, scratch, out.nodes, parallel)
+            : detail::build_bands<3, T, Node>(job, shear, scratch, out.nodes, parallel);
+    result.samples = bands.samples;
+    result.empty_rows = bands.empty_rows;
+    result.mix = T(bands.mix);
     if (result.samples == 0) {
         result.flags |= status::empty_importance;
     } else if (result.empty_rows > 0) {
@@ -169,50 +244,14 @@ build_result<T> build_axis(const count_view& counts, const build_options<T>& opt
     return result;
 }
 
-/// Counts view samples for the second axis: moved by the row functions, and transposed.
-///
-/// Cell (v, U) of the map, that is row U and column v, counts the samples whose warped u is in
-/// column U (Milet et al. 2015, §3, step 6). `build_axis` then gives the column functions.
-/// @param samples positions in map space; rejected as in `splat`
-/// @param rows    functions of u
-/// @param map     counters, added to; `map.width` cells along v, `map.height` columns
-/// @return        buffer_too_small, and nothing written, with `fits(map)` or `fits(rows)` false
-template <typename T, typename Node>
-splat_result splat_columns(std::span<const glm::vec<2, T>> samples, const table_view<T, Node>& rows,
-                           const count_map& map) {
-    splat_result result;
-    if (!fits(map) || !fits(rows)) {
-        result.rejected = samples.size();
-        result.flags = status::buffer_too_small;
-        return result;
-    }
-    for (const glm::vec<2, T>& p : samples) {
-        const int j = cell_of(p.y, map.width);
-        if (j < 0 || cell_of(p.x, 1) < 0) {
-            ++result.rejected;
-            continue;
-        }
-        const T warped = p.x + axis_offset(rows, blend_rows(p.y, rows.rows), p.x);
-        // rounding may carry the last sample past 1
-        const int i = cell_of(glm::clamp(warped, T(0), T(1)), map.height);
-        const auto cell = static_cast<std::size_t>(i) * static_cast<std::size_t>(map.width) +
-                          static_cast<std::size_t>(j);
-        result.flags |= count_sample(map, cell);
-        ++result.counted;
-    }
-    if (result.rejected != 0) {
-        result.flags |= status::samples_rejected;
-    }
-    return result;
-}
-
-/// Memory for `build_warp`, owned by the caller, for a map of size × size cells.
+/// Memory for `build_warp`, owned by the caller.
 template <typename T, typename Node = T> struct warp_memory {
-    int size = 0;                     ///< cells along either axis
-    std::span<std::uint32_t> counts;  ///< size · size
-    std::span<std::uint64_t> scratch; ///< size
-    std::span<Node> rows;             ///< size · (size + 1): receives the row functions
-    std::span<Node> columns;          ///< size · (size + 1): receives the column functions
+    int size = 0;                     ///< cells of a function, along either axis
+    std::span<std::uint32_t> counts;  ///< size · functions
+    std::span<std::uint64_t> scratch; ///< `scratch_size(size, options)`; size for the defaults
+    std::span<Node> rows;             ///< functions · (size + 1): receives the row functions
+    std::span<Node> columns;          ///< functions · (size + 1): receives the column functions
+    int functions = 0;                ///< functions of either axis; 0 for `size`
 };
 
 /// The smallest table there is: one function of one cell, the identity.
@@ -224,45 +263,76 @@ template <typename T, typename Node = T> table_view<T, Node> identity_table() {
 
 /// Tables of both axes and what building them met.
 template <typename T, typename Node = T> struct warp_result {
-    /// Functions of u, one per row.
+    /// Functions of u, one per row; with `v_first` functions of v, one per column.
     table_view<T, Node> rows = identity_table<T, Node>();
-    /// Functions of v, one per column.
+    /// Functions of v, one per column; with `v_first` functions of u, one per row.
     table_view<T, Node> columns = identity_table<T, Node>();
     splat_result splat;        ///< counted and rejected samples
     status flags = status::ok; ///< union of all steps
+    T row_mix = T(0);          ///< what the shear limit took of the first axis
+    T column_mix = T(0);       ///< and of the second
+    /// The tables are those of the map with its axes exchanged: `warp(rows, columns, p.yx)` is the
+    /// warped (V, U), the same for `unwarp`, and `jacobian` gives columns ∂/∂v and ∂/∂u of (V, U).
+    bool v_first = false;
 };
 
 /// Builds a non-orthogonal warp from view samples (Milet et al. 2015, §3, steps 2 to 7).
 ///
-/// @param samples positions of lit-facing view samples in map space
-/// @param options window and floor
-/// @param memory  where counts and tables go; with buffer_too_small nothing is written and the
-///                result's tables are the identity
-template <typename T, typename Node>
+/// @param samples  positions of lit-facing view samples in map space
+/// @param options  window, floor, shear limit, order of axes
+/// @param memory   where counts and tables go; with buffer_too_small nothing is written and the
+///                 result's tables are the identity
+/// @param parallel parallel-for, see `serial_for`; the samples are counted one after another
+template <typename T, typename Node, typename Parallel = serial_for>
 warp_result<T, Node> build_warp(std::span<const glm::vec<2, T>> samples,
-                                const build_options<T>& options,
-                                const warp_memory<T, Node>& memory) {
+                                const build_options<T>& options, const warp_memory<T, Node>& memory,
+                                const Parallel& parallel = Parallel{}) {
     warp_result<T, Node> result;
+    const int functions = memory.functions == 0 ? memory.size : memory.functions;
     const std::size_t cells = memory.size > 0 ? static_cast<std::size_t>(memory.size) : 0;
-    if (cells == 0 || memory.counts.size() < cells * cells || memory.scratch.size() < cells ||
-        memory.rows.size() < cells * (cells + 1) || memory.columns.size() < cells * (cells + 1)) {
+    const std::size_t count = functions > 0 ? static_cast<std::size_t>(functions) : 0;
+    if (cells == 0 || count == 0 || memory.counts.size() < cells * count ||
+        memory.scratch.size() < scratch_size(memory.size, options) ||
+        memory.rows.size() < count * (cells + 1) || memory.columns.size() < count * (cells + 1)) {
         result.flags = status::buffer_too_small;
         return result;
     }
-    const count_map counts{memory.counts, memory.size, memory.size};
-    const table_span<T, Node> rows{memory.rows, memory.size, memory.size};
-    const table_span<T, Node> columns{memory.columns, memory.size, memory.size};
+    const count_map counts{memory.counts, memory.size, functions};
+    const table_span<T, Node> rows{memory.rows, memory.size, functions};
+    const table_span<T, Node> columns{memory.columns, memory.size, functions};
+    const auto ordered = [&options](glm::vec<2, T> p) {
+        return options.v_first ? glm::vec<2, T>(p.y, p.x) : p;
+    };
 
     clear(counts);
-    result.splat = splat(samples, counts);
+    result.splat = detail::count_samples(
+        samples,
+        [&](glm::vec<2, T> p) {
+            const glm::vec<2, T> q = ordered(p);
+            const int i = cell_of(q.x, counts.width);
+            const int j = cell_of(q.y, counts.height);
+            return i < 0 || j < 0 ? std::ptrdiff_t(-1)
+                                  : static_cast<std::ptrdiff_t>(j) * counts.width + i;
+        },
+        counts);
     result.flags |= result.splat.flags;
-    result.flags |= build_axis(counts, options, memory.scratch, rows).flags;
+    const build_result<T> first = build_axis(counts, options, memory.scratch, rows, parallel);
+    result.flags |= first.flags;
+    result.row_mix = first.mix;
     result.rows = rows;
 
     clear(counts);
-    result.flags |= splat_columns(samples, result.rows, counts).flags;
-    result.flags |= build_axis(counts, options, memory.scratch, columns).flags;
+    result.flags |=
+        detail::count_samples(
+            samples,
+            [&](glm::vec<2, T> p) { return detail::column_cell(result.rows, ordered(p), counts); },
+            counts)
+            .flags;
+    const build_result<T> second = build_axis(counts, options, memory.scratch, columns, parallel);
+    result.flags |= second.flags;
+    result.column_mix = second.mix;
     result.columns = columns;
+    result.v_first = options.v_first;
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <warpshadow/bias.hpp>
+#include <warpshadow/build_options.hpp>
 #include <warpshadow/calipers.hpp>
 #include <warpshadow/casters.hpp>
 #include <warpshadow/clip_space.hpp>
@@ -13,15 +14,20 @@
 #include <warpshadow/frustum.hpp>
 #include <warpshadow/hull.hpp>
 #include <warpshadow/importance.hpp>
+#include <warpshadow/importance_functions.hpp>
 #include <warpshadow/light.hpp>
 #include <warpshadow/lispsm.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/polytope.hpp>
 #include <warpshadow/predicates.hpp>
 #include <warpshadow/projective.hpp>
+#include <warpshadow/rectilinear.hpp>
+#include <warpshadow/second_axis.hpp>
+#include <warpshadow/shadow_edges.hpp>
 #include <warpshadow/shadow_frustum.hpp>
 #include <warpshadow/smoothing.hpp>
 #include <warpshadow/stable_fit.hpp>
 #include <warpshadow/status.hpp>
+#include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>

@@ -23,11 +23,26 @@ whole_range range_of(std::string_view function, std::string_view parameter,
     if (function == "ws_warp_node" && (parameter == "before" || parameter == "total")) {
         return {0, 0xffffff};
     }
+    if (function == "ws_blended_count") {
+        return parameter == "share" ? whole_range{0, 65536} : whole_range{0, 0xffffffff};
+    }
     if (parameter == "i" || parameter == "j") {
         return {0, 8}; // shift by it
     }
     if (parameter == "k") {
         return {0, 4}; // a node; every table has at least four cells
+    }
+    // bend tables: every table has at least four cells and rows
+    if (parameter == "blocks") {
+        return {4, 4};
+    }
+    if (parameter == "level") {
+        return {1, 2};
+    }
+    if (parameter == "cell0" || parameter == "cell1" || parameter == "row0" ||
+        parameter == "row1" || function == "ws_bend_of_block" ||
+        function == "ws_bend_of_surroundings") {
+        return {0, 3};
     }
     if (parameter == "face") {
         return {-1, 6};

@@ -7,8 +7,10 @@
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
+#include <warpshadow/importance_functions.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>
+#include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>

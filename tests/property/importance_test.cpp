@@ -293,3 +293,210 @@ TEST_CASE("concentration is cells times the sum of squares over the square of th
     one.at(3, 2) = 12345;
     REQUIRE(concentration(one.view()) == 32.0);
 }
+
+namespace {
+
+/// A sample with an importance of its own.
+template <typename T> struct weighted_point {
+    glm::vec<2, T> p;
+    T weight;
+};
+
+template <typename T> struct stored_weight {
+    T operator()(const weighted_point<T>& point) const { return point.weight; }
+};
+
+/// Steps of an importance as a whole number: the exact product, rounded up and cut.
+template <typename T> std::uint32_t exact_steps(T weight, T steps) {
+    if (!(weight > T(0))) {
+        return 0;
+    }
+    if (std::isinf(weight)) {
+        return 1u << 24;
+    }
+    // one rounding of the product, then whole numbers
+    const rational product = rational(T(weight * steps));
+    const integer limit = 1 << 24;
+    integer whole =
+        boost::multiprecision::numerator(product) / boost::multiprecision::denominator(product);
+    whole += rational(whole) < product ? 1 : 0;
+    return whole > limit ? (1u << 24) : whole.convert_to<std::uint32_t>();
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("an importance in steps is rounded up, at most 2^24, and never lost", "", float,
+                   double) {
+    using T = TestType;
+    using limits = std::numeric_limits<T>;
+    CHECK(weight_in_steps(limits::quiet_NaN(), T(256)) == 0u);
+    CHECK(weight_in_steps(T(0), T(256)) == 0u);
+    CHECK(weight_in_steps(T(-1), T(256)) == 0u);
+    CHECK(weight_in_steps(limits::min(), T(256)) == 1u);
+    CHECK(weight_in_steps(T(0.001), T(256)) == 1u); // the published alpha
+    CHECK(weight_in_steps(T(1), T(256)) == 256u);
+    CHECK(weight_in_steps(limits::max(), T(256)) == 1u << 24);
+    CHECK(weight_in_steps(limits::infinity(), T(1)) == 1u << 24);
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const T weight = static_cast<T>(std::exp2(d.between(-40.0, 30.0)));
+        const T steps = static_cast<T>(std::exp2(d.between(0, 16)));
+        RC_ASSERT(weight_in_steps(weight, steps) == exact_steps(weight, steps));
+    }));
+}
+
+TEMPLATE_TEST_CASE("weight_steps is the largest power of two whose sum stays below 2^32", "", float,
+                   double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const std::uint64_t samples = d.bits() >> d.between(24, 63);
+        const T largest = static_cast<T>(std::exp2(d.between(-3, 6))); // exact in T
+        const T steps = weight_steps(samples, largest);
+        int exponent = 0;
+        RC_ASSERT(std::frexp(steps, &exponent) == T(0.5));
+        RC_ASSERT(steps >= T(1));
+        RC_ASSERT(steps <= T(65536));
+        const rational limit = rational(integer(1) << 32);
+        const auto sum = [&](T s) {
+            return rational(integer(samples)) * (rational(s) * rational(largest) + 1);
+        };
+        RC_ASSERT(sum(steps) < limit || steps == T(1));
+        RC_ASSERT(steps == T(65536) || sum(T(2) * steps) >= limit);
+    }));
+}
+
+TEMPLATE_TEST_CASE("splat_weighted adds or keeps the largest, in any order, and accounts for all",
+                   "", float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const int width = d.size(40);
+        const int height = d.size(40);
+        const T steps = static_cast<T>(1 << d.between(0, 10));
+        std::vector<weighted_point<T>> points;
+        const int count = d.between(0, 400);
+        for (int i = 0; i < count; ++i) {
+            const T special[] = {T(0), T(-1), std::numeric_limits<T>::quiet_NaN(),
+                                 std::numeric_limits<T>::infinity(), T(1e-30)};
+            const T weight = d.between(0, 9) == 0 ? special[d.between(0, 4)]
+                                                  : static_cast<T>(d.between(0.0, 6.0));
+            points.push_back({{any_coordinate<T>(d), any_coordinate<T>(d)}, weight});
+        }
+        const cell_rule rule = d.coin() ? cell_rule::sum : cell_rule::largest;
+
+        owned_counts expected(width, height);
+        std::uint64_t inside = 0;
+        std::uint64_t weight = 0;
+        std::uint64_t weightless = 0;
+        for (const weighted_point<T>& point : points) {
+            const int i = cell_of(point.p.x, width);
+            const int j = cell_of(point.p.y, height);
+            if (i < 0 || j < 0 || std::isnan(point.weight)) {
+                continue;
+            }
+            const std::uint32_t amount = exact_steps(point.weight, steps);
+            ++inside;
+            weight += amount;
+            weightless += amount == 0 ? 1 : 0;
+            std::uint32_t& cell = expected.at(i, j);
+            const std::uint64_t sum = std::uint64_t(cell) + amount;
+            cell = rule == cell_rule::largest
+                       ? std::max(cell, amount)
+                       : static_cast<std::uint32_t>(std::min<std::uint64_t>(sum, largest_count));
+        }
+        for (int turn = 0; turn < 2; ++turn) {
+            owned_counts counts(width, height);
+            const splat_result result =
+                splat_weighted(std::span<const weighted_point<T>>(points), stored_weight<T>{},
+                               steps, rule, counts.map());
+            RC_ASSERT(counts.counts == expected.counts);
+            RC_ASSERT(result.counted == inside);
+            RC_ASSERT(result.rejected == points.size() - inside);
+            RC_ASSERT(result.weight == weight);
+            RC_ASSERT(result.weightless == weightless);
+            RC_ASSERT(any(result.flags, status::samples_rejected) == (inside != points.size()));
+            std::shuffle(points.begin(), points.end(), std::mt19937(7));
+        }
+    }));
+}
+
+TEST_CASE("splat_weighted: an importance of 1 in one step is splat, and guards are reported") {
+    dice d(4);
+    points<double> plain;
+    std::vector<weighted_point<double>> weighted;
+    for (int i = 0; i < 1000; ++i) {
+        plain.push_back({any_coordinate<double>(d), any_coordinate<double>(d)});
+        weighted.push_back({plain.back(), 1.0});
+    }
+    owned_counts a(17, 9);
+    owned_counts b(17, 9);
+    const splat_result plainly = splat(span_of(plain), a.map());
+    const splat_result result =
+        splat_weighted(std::span<const weighted_point<double>>(weighted), stored_weight<double>{},
+                       1.0, cell_rule::sum, b.map());
+    CHECK(a.counts == b.counts);
+    CHECK(result.counted == plainly.counted);
+    CHECK(result.rejected == plainly.rejected);
+    CHECK(result.flags == plainly.flags);
+
+    // peers 26: a counter near 2^32, and an importance beyond all steps
+    owned_counts full(1, 1);
+    full.at(0, 0) = largest_count - 10;
+    const weighted_point<double> heavy[] = {{{0.5, 0.5}, 1e300}};
+    const splat_result stopped =
+        splat_weighted(std::span<const weighted_point<double>>(heavy), stored_weight<double>{}, 1.0,
+                       cell_rule::sum, full.map());
+    CHECK(full.at(0, 0) == largest_count);
+    CHECK(stopped.flags == (status::count_overflow | status::out_of_range));
+    const splat_result none =
+        splat_weighted(std::span<const weighted_point<double>>(heavy), stored_weight<double>{}, 1.0,
+                       cell_rule::sum, count_map{{}, 1, 1});
+    CHECK(none.flags == status::buffer_too_small);
+    CHECK(none.rejected == 1);
+}
+
+TEST_CASE("a blended count goes its share of the way, rounded up, and arrives") {
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        std::uint32_t previous = static_cast<std::uint32_t>(d.bits()) >> d.between(0, 31);
+        const std::uint32_t current = static_cast<std::uint32_t>(d.bits()) >> d.between(0, 31);
+        const auto share = static_cast<std::uint32_t>(d.between(0, 65536));
+        const integer way = integer(current) - integer(previous);
+        const integer step = (abs(way) * share + 65535) / 65536;
+        const integer expected = way > 0 ? integer(previous) + step : integer(previous) - step;
+        const std::uint32_t blended = blended_count(previous, current, share);
+        RC_ASSERT(integer(blended) == expected);
+        RC_ASSERT(blended_count(previous, previous, share) == previous);
+        RC_ASSERT(blended_count(previous, current, 65536u) == current);
+        RC_ASSERT(blended_count(previous, current, 0u) == previous);
+        // the way is a share of itself until a step is one: 2^32 (1 - 2^-4)^n < 16, n < 302
+        if (share >= 4096) {
+            for (int frame = 0; frame < 320; ++frame) {
+                previous = blended_count(previous, current, share);
+            }
+            RC_ASSERT(previous == current);
+        }
+    }));
+}
+
+TEST_CASE("blend: cell by cell, shares are clamped, sizes must agree") {
+    dice d(5);
+    owned_counts current = any_counts(d, 13, 7);
+    owned_counts map(13, 7);
+    for (std::uint32_t& n : map.counts) {
+        n = static_cast<std::uint32_t>(d.bits());
+    }
+    const owned_counts before = map;
+    CHECK(blend(current.view(), -1, map.map()) == status::out_of_range);
+    CHECK(map.counts == before.counts);
+    CHECK(blend(current.view(), 20000, map.map()) == status::ok);
+    for (std::size_t i = 0; i < map.counts.size(); ++i) {
+        REQUIRE(map.counts[i] == blended_count(before.counts[i], current.counts[i], 20000u));
+    }
+    CHECK(blend(current.view(), 70000, map.map()) == status::out_of_range);
+    CHECK(map.counts == current.counts);
+    owned_counts other(7, 13);
+    CHECK(blend(current.view(), 70000, other.map()) == status::buffer_too_small);
+    CHECK(other.counts == owned_counts(7, 13).counts);
+}

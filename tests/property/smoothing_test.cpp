@@ -197,3 +197,134 @@ TEMPLATE_TEST_CASE("window_radius is half the share of the rows, within [0, rows
     }
     REQUIRE(window_radius(T(0.12), 512) == 30);
 }
+
+namespace {
+
+/// Weight of row y in the window of row `centre`: ways to get there by steps of at most `radius`
+/// that stay on the map.
+integer window_weight(int y, int centre, int radius, int rows, int passes) {
+    if (passes == 1) {
+        return in_window(y, centre, radius) ? 1 : 0;
+    }
+    integer weight = 0;
+    for (int z = 0; z < rows; ++z) {
+        if (in_window(z, centre, radius)) {
+            weight += window_weight(y, z, radius, rows, passes - 1);
+        }
+    }
+    return weight;
+}
+
+template <int Passes> void check_box_sums() {
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const int width = d.size(12);
+        const int height = d.size(14);
+        const owned_counts c = any_counts(d, width, height);
+        const int radius = std::max(any_radius(d, height), 0);
+        const int shift = d.coin() ? 0 : d.between(0, 31);
+        const int first = d.between(0, height - 1);
+        const auto n = static_cast<std::size_t>(width);
+        std::vector<std::uint64_t> memory(n * box_sums<Passes>::memory + 2, 99u);
+        box_sums<Passes> window(c.view(), radius, shift, first,
+                                std::span(memory).first(n * box_sums<Passes>::memory));
+        for (int row = first; row < height; ++row) {
+            RC_ASSERT(window.row() == row);
+            integer total = 0;
+            for (int i = 0; i < width; ++i) {
+                integer sum = 0;
+                for (int y = 0; y < height; ++y) {
+                    sum += window_weight(y, row, radius, height, Passes) *
+                           integer(c.at(i, y) >> shift);
+                }
+                RC_ASSERT(integer(window.sums()[static_cast<std::size_t>(i)]) == sum);
+                total += sum;
+            }
+            RC_ASSERT(integer(window.total()) == total);
+            if (row + 1 < height) {
+                window.advance();
+            }
+        }
+        RC_ASSERT(memory[memory.size() - 2] == 99u);
+        RC_ASSERT(memory[memory.size() - 1] == 99u);
+    }));
+}
+
+} // namespace
+
+TEST_CASE("box_sums<1> from any row is the direct sum") {
+    check_box_sums<1>();
+}
+TEST_CASE("box_sums<2> from any row is the sum weighted by a tent, cut at the border") {
+    check_box_sums<2>();
+}
+TEST_CASE("box_sums<3> from any row is the sum weighted by three boxes, cut at the border") {
+    check_box_sums<3>();
+}
+
+TEST_CASE("a tent and a bell away from the border are what their names say") {
+    owned_counts c(1, 41);
+    c.at(0, 20) = 1;
+    std::vector<std::uint64_t> memory(7);
+    box_sums<2> tent(c.view(), 3, 0, 0, memory);
+    for (int y = 0; y < 41; ++y) {
+        CHECK(tent.sums()[0] == static_cast<std::uint64_t>(std::max(7 - std::abs(y - 20), 0)));
+        if (y < 40) {
+            tent.advance();
+        }
+    }
+    // the standard deviation asked for, within the step of a whole radius
+    for (const window_shape shape :
+         {window_shape::box, window_shape::tent, window_shape::gaussian}) {
+        for (double deviation = 0.0; deviation < 50.0; deviation += 0.37) {
+            const double r = radius_for_deviation(deviation, shape);
+            const auto variance = [&](double radius) {
+                return box_passes(shape) * radius * (radius + 1.0) / 3.0;
+            };
+            CHECK(variance(r - 0.5) <= deviation * deviation + 1e-9);
+            CHECK(variance(r + 0.5) >= deviation * deviation - 1e-9);
+        }
+        CHECK(radius_for_deviation(-1.0, shape) == 0);
+        CHECK(radius_for_deviation(std::nan(""), shape) == 0);
+        CHECK(radius_for_deviation(1e300, shape) == 1 << 30);
+    }
+}
+
+TEST_CASE("J40: every shape ends at the sums that all rows share, times a constant") {
+    dice d(11);
+    const owned_counts c = any_counts(d, 9, 13);
+    std::vector<std::uint64_t> memory(9 * 7);
+    std::vector<std::uint64_t> once(9);
+    row_window all(c.view(), 13, once);
+    box_sums<3> bell(c.view(), 12, 0, 0, memory);
+    for (int y = 0; y < 13; ++y) {
+        for (std::size_t i = 0; i < 9; ++i) {
+            REQUIRE(bell.sums()[i] == 169 * all.sums()[i]);
+        }
+        if (y < 12) {
+            bell.advance();
+        }
+    }
+}
+
+TEST_CASE("window_shift keeps weighted sums below 2^63, and is 0 for all counts of a box") {
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const std::uint64_t samples = d.bits() >> d.between(1, 63);
+        const int rows = d.size(32768);
+        const int radius = any_radius(d, rows) < 0 ? 0 : any_radius(d, rows) & 0x7fffffff;
+        for (const window_shape shape :
+             {window_shape::box, window_shape::tent, window_shape::gaussian}) {
+            const int shift = window_shift(samples, radius, rows, shape);
+            const integer widest = std::min(2 * integer(radius) + 1, integer(rows));
+            integer weight = 1;
+            for (int pass = 1; pass < box_passes(shape); ++pass) {
+                weight *= widest;
+            }
+            const integer limit = integer(1) << 63;
+            RC_ASSERT(integer(samples >> shift) * weight <= limit);
+            RC_ASSERT(shift == 0 || integer(samples >> (shift - 1)) * weight > limit / 2);
+        }
+    }));
+    CHECK(window_shift(std::uint64_t(1) << 28, 4096, 4096, window_shape::tent) == 0);
+}

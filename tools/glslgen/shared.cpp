@@ -6,9 +6,11 @@
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
+#include <warpshadow/importance_functions.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>
+#include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
 
@@ -24,6 +26,8 @@ using settings = warpshadow::bias_settings<float>;
 using bias = warpshadow::depth_bias<float>;
 using axes = warpshadow::texel_axes<float>;
 using volume = warpshadow::view_volume<float>;
+using seen = warpshadow::seen_point<float>;
+using functions = warpshadow::importance_options<float>;
 
 // status
 using warpshadow::any;
@@ -47,6 +51,20 @@ template vec2 warpshadow::crop<float>(const warpshadow::map_rect<float>&, vec2);
 
 // importance
 template int warpshadow::cell_of<float>(float, int);
+template unsigned warpshadow::weight_in_steps<float>(float, float);
+template unsigned warpshadow::blended_count<unsigned>(unsigned, unsigned, unsigned);
+
+// importance_functions
+template float warpshadow::desired_view_importance<float>(vec4, float, float);
+template float warpshadow::depth_importance<float>(float, float, float);
+template float warpshadow::distance_importance<float>(float, float, float);
+template bool warpshadow::depth_edge<float>(float, vec4, vec4, float);
+template float warpshadow::edge_importance<float>(bool, float);
+template float warpshadow::normal_importance<float>(float, float);
+template float warpshadow::lit_importance<float>(float, float);
+template float warpshadow::view_importance<float>(const seen&, const functions&);
+template float warpshadow::forward_importance<float>(vec4, float, float, bool, float,
+                                                     const functions&);
 
 // warp
 template warpshadow::row_blend<float> warpshadow::blend_rows<float>(float, int);
@@ -58,6 +76,17 @@ template vec2 warpshadow::warp_floor<float, float>(const table&, const table&, v
 template vec2 warpshadow::unwarp_floor<float, float>(const table&, const table&, vec2);
 template mat2 warpshadow::jacobian<float, float>(const table&, const table&, vec2);
 template vec4 warpshadow::warp_clip<float, float>(const table&, const table&, vec4);
+
+// tessellation
+template float warpshadow::bend_of_block<float, float>(const table&, const table&, int, int, int);
+template int warpshadow::bend_unit<float, float>(const table&, const table&);
+template float warpshadow::bend_of_surroundings<float>(const table&, int, int, int, int);
+template float warpshadow::edge_deviation<float>(const table&, vec2, vec2);
+template bool warpshadow::edge_needs_cut<float>(const table&, vec2, vec2, float);
+template bool warpshadow::edge_departs<float, float>(const table&, const table&, const table&, vec2,
+                                                     vec2, float);
+template int warpshadow::edge_segments<float>(const table&, vec2, vec2, float, int);
+template float warpshadow::split_deviation<float>(const table&, vec2, vec2, int);
 
 // warp_build
 template float warpshadow::warp_node<float, unsigned>(unsigned, unsigned, int, int, float);
