@@ -9,7 +9,8 @@
 #ifndef WS_BINDING_TABLE
 #define WS_BINDING_TABLE 1
 #endif
-#define WS_BUILD_GROUP 128
+#define WS_BUILD_GROUP 64 // lanes of a row
+#define WS_BUILD_BLOCK 8  // lanes whose sums are added up by one of them
 
 layout(local_size_x = WS_BUILD_GROUP) in;
 
@@ -20,6 +21,7 @@ uniform int ws_radius;  // half-width of the window, from ws_window_radius
 uniform float ws_floor; // density floor
 
 shared uint ws_partial[WS_BUILD_GROUP];
+shared uint ws_blocks[WS_BUILD_GROUP / WS_BUILD_BLOCK];
 
 uint ws_window_count(int i, int row, int last)
 {
@@ -45,14 +47,25 @@ void main()
     }
     ws_partial[lane] = sum;
     barrier();
-    for (int step = 1; step < WS_BUILD_GROUP; step *= 2) {
-        uint other = lane >= step ? ws_partial[lane - step] : 0u;
-        barrier();
-        ws_partial[lane] += other;
-        barrier();
+    // two levels, two barriers: reading a few sums more costs less than waiting at every doubling
+    if (lane < WS_BUILD_GROUP / WS_BUILD_BLOCK) {
+        uint block = 0u;
+        for (int i = 0; i < WS_BUILD_BLOCK; ++i) {
+            block += ws_partial[lane * WS_BUILD_BLOCK + i];
+        }
+        ws_blocks[lane] = block;
     }
-    uint total = ws_partial[WS_BUILD_GROUP - 1];
-    uint before = ws_partial[lane] - sum;
+    barrier();
+    uint before = 0u;
+    uint total = 0u;
+    int own = lane / WS_BUILD_BLOCK;
+    for (int i = 0; i < WS_BUILD_GROUP / WS_BUILD_BLOCK; ++i) {
+        before += i < own ? ws_blocks[i] : 0u;
+        total += ws_blocks[i];
+    }
+    for (int i = own * WS_BUILD_BLOCK; i < (own + 1) * WS_BUILD_BLOCK; ++i) {
+        before += i < lane ? ws_partial[i] : 0u;
+    }
 
     for (int k = first; k < end; ++k) {
         imageStore(ws_table, ivec2(k, row),

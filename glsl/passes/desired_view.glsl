@@ -9,9 +9,9 @@
 #define WS_BINDING_DESIRED_VIEW 0
 #endif
 
-layout(local_size_x = 16, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 4) in;
 
-layout(std430, binding = WS_BINDING_DESIRED_VIEW) buffer ws_desired_view_buffer
+layout(std430, binding = WS_BINDING_DESIRED_VIEW) coherent buffer ws_desired_view_buffer
 {
     uint ws_desired_lo[2];
     uint ws_desired_hi[2];
@@ -43,12 +43,17 @@ void main()
             }
         }
     }
-    if (lo.x <= hi.x) {
-        // abs clears the sign of a negative zero, whose bits are large
-        atomicMin(ws_group_lo[0], floatBitsToUint(abs(lo.x)));
-        atomicMin(ws_group_lo[1], floatBitsToUint(abs(lo.y)));
-        atomicMax(ws_group_hi[0], floatBitsToUint(abs(hi.x)));
-        atomicMax(ws_group_hi[1], floatBitsToUint(abs(hi.y)));
+    // abs clears the sign of a negative zero, whose bits are large
+    uvec2 least = floatBitsToUint(abs(lo));
+    uvec2 largest = floatBitsToUint(abs(hi));
+    // Bounds only ever widen: what does not widen those that are read here, however old, never will.
+    // After the first groups hardly any invocation has an atomic to do.
+    if (lo.x <= hi.x && (least.x < ws_desired_lo[0] || least.y < ws_desired_lo[1] ||
+                         largest.x > ws_desired_hi[0] || largest.y > ws_desired_hi[1])) {
+        atomicMin(ws_group_lo[0], least.x);
+        atomicMin(ws_group_lo[1], least.y);
+        atomicMax(ws_group_hi[0], largest.x);
+        atomicMax(ws_group_hi[1], largest.y);
     }
     barrier();
 

@@ -269,3 +269,78 @@ TEST_CASE("passes: desired view is that of the host") {
         CHECK(device[3] == hi.y);
     }
 }
+
+TEST_CASE("passes: every way to splat counts the same samples") {
+    const gl::headless_context context;
+    GLint extensions = 0;
+    glGetIntegerv(GL_NUM_EXTENSIONS, &extensions);
+    int found = 0;
+    for (GLint i = 0; i < extensions; ++i) {
+        const std::string name(
+            reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i))));
+        found += name == "GL_ARB_shader_ballot" || name == "GL_ARB_gpu_shader_int64" ? 1 : 0;
+    }
+    struct way {
+        std::string head;
+        int per_side; ///< samples along a side of what an invocation takes
+    };
+    std::vector<way> ways{{"", 1}, {"#define WS_SPLAT_MERGED\n", 2}};
+    if (found == 2) {
+        ways.push_back({"#extension GL_ARB_shader_ballot : require\n"
+                        "#extension GL_ARB_gpu_shader_int64 : require\n"
+                        "#define WS_SPLAT_BALLOT\n",
+                        1});
+    }
+    for (const way& each : ways) {
+        for (const int every : {0, 1, 2, 3, 4, 7}) { // 0: all of them, without the option
+            const gl::program splat =
+                pass(each.head + (every > 0 ? "#define WS_SPLAT_SUBSET\n" : "") + view_samples +
+                     "#include \"warpshadow/importance.glsl\"\n#include \"passes/splat.glsl\"\n");
+            for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(257, 193)}) {
+                const view samples = make_view(size, 5u);
+                const gl::buffer list(std::span<const glm::vec4>(samples.all));
+                list.bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+                const int block = std::max(every, 1);
+                std::vector<glm::vec2> expected;
+                for (int y = 0; y < size.y; ++y) {
+                    for (int x = 0; x < size.x; ++x) {
+                        const glm::ivec2 in_block(x % block, y % block);
+                        const glm::ivec2 turn((y / block) % block, (x / block) % block);
+                        const glm::vec4 s = samples.all[static_cast<std::size_t>(y * size.x + x)];
+                        if (in_block == turn && s.z != 0.0f) {
+                            expected.emplace_back(s);
+                        }
+                    }
+                }
+                for (const int cells : {1, 5, 64, 301}) {
+                    gl::texture counts(GL_R32UI, cells, cells);
+                    counts.clear(glm::uvec4(0u));
+                    counts.bind_image(0, GL_READ_WRITE);
+                    splat.set("view_size", size);
+                    splat.set("ws_every", every);
+                    const int side = block * each.per_side;
+                    splat.dispatch((size.x + side - 1) / side, (size.y + side - 1) / side);
+                    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+
+                    std::vector<std::uint32_t> host(static_cast<std::size_t>(cells * cells));
+                    ws::splat(std::span<const glm::vec2>(expected),
+                              ws::count_map{host, cells, cells});
+                    INFO(each.head << "every " << every << ", " << size.x << " samples, " << cells
+                                   << " cells");
+                    CHECK(counts.read<std::uint32_t>() == host);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("passes: tables of the largest size") {
+    const gl::headless_context context;
+    const int size = 4096;
+    const view samples = make_view({640, 479}, 3u);
+    const ws::build_options<float> options;
+    gl::texture rows(GL_R32F, size + 1, size);
+    const device_axis built = build_on_device(
+        samples, size, ws::window_radius(options.window, size), options.floor, nullptr, rows);
+    compare_tables(built.table, build_on_host(built.counts, size, options), size);
+}

@@ -1,0 +1,419 @@
+// Compute passes of glsl/passes against the G-buffer pass of the same run.
+//
+// A scene of 261,000 triangles, seen at 1024² pixels. Every round draws the G-buffer once and runs
+// every pipeline once, so that all share whatever the machine is doing; medians over the rounds.
+// Usage: passes_bench [rounds] [part of a line's name, such as "tables 128"]
+#include "gl/context.hpp"
+#include "gl/mesh.hpp"
+#include "gl/objects.hpp"
+#include "gl/timer.hpp"
+
+#include <warpshadow/conventions.hpp>
+#include <warpshadow/fit.hpp>
+#include <warpshadow/frustum.hpp>
+#include <warpshadow/light.hpp>
+#include <warpshadow/smoothing.hpp>
+#include <warpshadow/warp_build.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <list>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace ws = warpshadow;
+
+namespace {
+
+constexpr int view = 1024;
+
+struct scene {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    std::vector<glm::vec4> normals; ///< per triangle
+    ws::box3<double> box;
+};
+
+float height(float x, float z) {
+    return 4.0f * std::sin(x * 0.05f) * std::cos(z * 0.04f) +
+           0.6f * std::sin(x * 0.31f + z * 0.23f);
+}
+
+void add_box(scene& to, glm::vec3 lo, glm::vec3 hi) {
+    const auto first = static_cast<unsigned>(to.positions.size());
+    for (int i = 0; i < 8; ++i) {
+        to.positions.emplace_back((i & 1) != 0 ? hi.x : lo.x, (i & 2) != 0 ? hi.y : lo.y,
+                                  (i & 4) != 0 ? hi.z : lo.z);
+    }
+    constexpr std::array<std::array<unsigned, 4>, 6> faces{
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+    for (const auto& f : faces) {
+        to.triangles.emplace_back(first + f[0], first + f[1], first + f[2]);
+        to.triangles.emplace_back(first + f[0], first + f[2], first + f[3]);
+    }
+}
+
+/// Hills of 330 × 330 × 2 triangles with 3,600 boxes on them.
+scene make_scene() {
+    scene result;
+    constexpr unsigned cells = 330;
+    constexpr float extent = 200.0f;
+    for (unsigned j = 0; j <= cells; ++j) {
+        for (unsigned i = 0; i <= cells; ++i) {
+            const float x = extent * (static_cast<float>(i) / cells - 0.5f);
+            const float z = extent * (static_cast<float>(j) / cells - 0.5f);
+            result.positions.emplace_back(x, height(x, z), z);
+        }
+    }
+    for (unsigned j = 0; j < cells; ++j) {
+        for (unsigned i = 0; i < cells; ++i) {
+            const unsigned a = j * (cells + 1) + i;
+            const unsigned b = a + cells + 1;
+            result.triangles.emplace_back(a, b, b + 1);
+            result.triangles.emplace_back(a, b + 1, a + 1);
+        }
+    }
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> anywhere(-0.5f * extent, 0.5f * extent);
+    std::uniform_real_distribution<float> size(0.1f, 0.7f);
+    for (int i = 0; i < 3600; ++i) {
+        const float x = anywhere(random);
+        const float z = anywhere(random);
+        const float w = size(random);
+        const float h = 4.0f * size(random);
+        const float y = height(x, z);
+        add_box(result, {x - w, y - 1.0f, z - w}, {x + w, y + h, z + w});
+    }
+    glm::vec3 lo(std::numeric_limits<float>::max());
+    glm::vec3 hi = -lo;
+    for (const glm::vec3& p : result.positions) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    result.box = {glm::dvec3(lo), glm::dvec3(hi)};
+    for (const glm::uvec3& t : result.triangles) {
+        const glm::vec3 a = result.positions[t.x];
+        result.normals.emplace_back(
+            glm::normalize(glm::cross(result.positions[t.y] - a, result.positions[t.z] - a)), 0.0f);
+    }
+    return result;
+}
+
+constexpr const char* g_buffer_vertex = R"(#version 430 core
+layout(location = 0) in vec3 position;
+uniform mat4 camera;
+out vec3 world;
+void main()
+{
+    world = position;
+    gl_Position = camera * vec4(position, 1.0);
+}
+)";
+
+constexpr const char* g_buffer_fragment = R"(#version 430 core
+in vec3 world;
+uniform vec3 eye;
+layout(std430, binding = 0) readonly buffer face_normals { vec4 face_normal[]; };
+layout(location = 0) out vec4 out_position;
+layout(location = 1) out vec4 out_normal;
+void main()
+{
+    vec3 normal = face_normal[gl_PrimitiveID].xyz;
+    out_position = vec4(world, 1.0);
+    out_normal = vec4(dot(normal, eye - world) < 0.0 ? -normal : normal, 0.0);
+}
+)";
+
+/// View samples of the G-buffer in the map of the light, whole or cropped.
+constexpr const char* view_samples = R"(
+layout(binding = 0) uniform sampler2D g_position;
+layout(binding = 1) uniform sampler2D g_normal;
+layout(std140, binding = 4) uniform light_buffer // read so, written as a storage buffer
+{
+    mat4 light_full;
+    mat4 light_matrix;
+    vec4 light_position;
+};
+ivec2 ws_view_size() { return textureSize(g_position, 0); }
+bool ws_view_sample(ivec2 pixel, out vec2 p)
+{
+    p = vec2(0.0);
+    vec4 world = texelFetch(g_position, pixel, 0);
+    if (world.w == 0.0 ||
+        dot(texelFetch(g_normal, pixel, 0).xyz,
+            normalize(light_position.xyz - light_position.w * world.xyz)) <= 0.0) {
+        return false;
+    }
+#ifdef FULL_MAP
+    vec4 clip = light_full * vec4(world.xyz, 1.0);
+#else
+    vec4 clip = light_matrix * vec4(world.xyz, 1.0);
+#endif
+    p = clip.xy / clip.w * 0.5 + 0.5;
+    return clip.w > 0.0;
+}
+)";
+
+gl::shader_library& library() {
+    static gl::shader_library files{gl::glsl_files()};
+    return files;
+}
+
+gl::program compute(const std::string& text) {
+    return gl::program::compute(library().compose("#version 430 core\n" + text, "passes_bench"));
+}
+
+void wait_for_writes() {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? 0.0 : values[values.size() / 2];
+}
+
+struct bench {
+    bench() {
+        const glm::dvec3 eye(-60.0, static_cast<double>(height(-60.0f, 5.0f)) + 3.0, 5.0);
+        const ws::view_volume<double> volume = ws::perspective_volume(1.0, 1.0, 0.05, 400.0);
+        const ws::frustum<double> frustum =
+            ws::make_frustum(eye, glm::dvec3(1.0, -0.12, 0.1), glm::dvec3(0.0, 1.0, 0.0), volume)
+                .value;
+        draw.set("camera", glm::mat4(ws::projection_matrix(volume, ws::clip::opengl) *
+                                     ws::view_matrix(frustum, ws::clip::opengl)));
+        draw.set("eye", glm::vec3(eye));
+        const glm::dvec3 sun(0.6, -1.0, 0.35);
+        struct {
+            glm::mat4 full, matrix;
+            glm::vec4 position;
+        } block;
+        block.full = block.matrix = glm::mat4(
+            ws::directional_light_matrix(ws::sun(sun), world.box, ws::clip::opengl).matrix);
+        block.position = glm::vec4(-glm::vec3(glm::normalize(sun)), 0.0f);
+        light = gl::buffer(sizeof block, &block, GL_DYNAMIC_DRAW);
+        light.bind_base(GL_SHADER_STORAGE_BUFFER, 4);
+        light.bind_base(GL_UNIFORM_BUFFER, 4);
+        normals = gl::buffer(std::span<const glm::vec4>(world.normals));
+        normals.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    }
+
+    void draw_view() {
+        target.bind();
+        glEnable(GL_DEPTH_TEST);
+        glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        draw.use();
+        mesh.draw();
+    }
+
+    scene world = make_scene();
+    gl::mesh mesh{world.positions, world.triangles};
+    gl::buffer normals, light;
+    gl::texture position{GL_RGBA32F, view, view}, normal{GL_RGBA32F, view, view},
+        depth{GL_DEPTH_COMPONENT32F, view, view};
+    gl::framebuffer target{{&position, &normal}, &depth};
+    gl::program draw{{{GL_VERTEX_SHADER, library().compose(g_buffer_vertex, "vertex")},
+                      {GL_FRAGMENT_SHADER, library().compose(g_buffer_fragment, "fragment")}}};
+    gl::stopwatch watch{gl::best_timing()};
+};
+
+/// The steps of one way to build the tables, each timed.
+struct pipeline {
+    std::string name;
+    std::vector<std::pair<std::string, std::function<void()>>> steps;
+    std::vector<std::vector<double>> times; ///< per step
+    std::vector<double> sums;
+};
+
+/// Counts and tables of one size.
+struct tables {
+    explicit tables(int cells)
+        : counts(GL_R32UI, cells, cells), rows(GL_R32F, cells + 1, cells),
+          columns(GL_R32F, cells + 1, cells) {}
+    gl::texture counts, rows, columns;
+};
+
+struct programs {
+    static gl::program splat(bool columns, bool subset) {
+        return compute("#define WS_SPLAT_MERGED\n" +
+                       std::string(subset ? "#define WS_SPLAT_SUBSET\n" : "") +
+                       (columns ? "#define WS_SPLAT_COLUMNS\n#define WS_BINDING_ROWS 2\n" : "") +
+                       view_samples +
+                       "#include \"warpshadow/importance.glsl\"\n"
+                       "#include \"warpshadow/warp.glsl\"\n#include \"passes/splat.glsl\"\n");
+    }
+    gl::program find =
+        compute(std::string("#define FULL_MAP\n#define WS_BINDING_DESIRED_VIEW 5\n") +
+                view_samples + "#include \"passes/desired_view.glsl\"\n");
+    std::array<gl::program, 2> splat_rows{splat(false, false), splat(false, true)}; // all, subset
+    std::array<gl::program, 2> splat_columns{splat(true, false), splat(true, true)};
+    gl::program sums = compute("#include \"passes/column_sums.glsl\"\n");
+    gl::program build = compute("#include \"warpshadow/warp_build.glsl\"\n"
+                                "#include \"passes/build_axis.glsl\"\n");
+    gl::program crop = compute(R"(
+#include "warpshadow/fit.glsl"
+layout(local_size_x = 1) in;
+layout(std430, binding = 4) buffer light_buffer { mat4 light_full; mat4 light_matrix; };
+layout(std430, binding = 5) readonly buffer desired_view { uint lo_bits[2]; uint hi_bits[2]; };
+void main()
+{
+    vec2 lo = vec2(0.0);
+    vec2 hi = vec2(1.0);
+    if (lo_bits[0] <= hi_bits[0]) {
+        ws_widen_side(uintBitsToFloat(lo_bits[0]), uintBitsToFloat(hi_bits[0]), 0.001, lo.x, hi.x);
+        ws_widen_side(uintBitsToFloat(lo_bits[1]), uintBitsToFloat(hi_bits[1]), 0.001, lo.y, hi.y);
+    }
+    vec2 scale = 1.0 / (hi - lo);
+    vec2 shift = (1.0 - 2.0 * lo) * scale - 1.0;
+    mat4 cropped = light_full;
+    for (int column = 0; column < 4; ++column) {
+        cropped[column].xy = scale * cropped[column].xy + shift * cropped[column].w;
+    }
+    light_matrix = cropped;
+}
+)");
+};
+
+int blocks_along(int every) {
+    return (view + 2 * every - 1) / (2 * every);
+}
+
+pipeline make_pipeline(const programs& run, gl::buffer& bounds, tables& to, int every) {
+    const int cells = to.counts.width();
+    const auto splat = [&to, every](const std::array<gl::program, 2>& of) {
+        const gl::program& with = of[every > 1 ? 1 : 0];
+        to.counts.clear(glm::uvec4(0u));
+        to.counts.bind_image(0, GL_READ_WRITE);
+        with.set("ws_every", every);
+        with.dispatch(blocks_along(every), blocks_along(every));
+        wait_for_writes();
+    };
+    const auto build = [&run, &to, cells](const gl::texture& table) {
+        to.counts.bind_image(0, GL_READ_WRITE);
+        run.sums.dispatch(cells);
+        wait_for_writes();
+        table.bind_image(1, GL_WRITE_ONLY);
+        run.build.set("ws_radius", ws::window_radius(0.12f, cells));
+        run.build.set("ws_floor", std::max(0.2f, 4.0f * ws::smallest_floor<float, float>(cells)));
+        run.build.use();
+        glDispatchCompute(static_cast<GLuint>(cells), 1, 1);
+        wait_for_writes();
+    };
+    pipeline result;
+    result.name = "tables " + std::to_string(cells) + ", every " + std::to_string(every);
+    result.steps = {
+        {"view",
+         [&run, &bounds] {
+             const std::array<std::uint32_t, 4> empty{0x7f800000u, 0x7f800000u, 0u, 0u};
+             bounds.write(0, sizeof empty, empty.data());
+             run.find.dispatch((view + 3) / 4, (view + 3) / 4);
+             wait_for_writes();
+             run.crop.dispatch(1);
+             wait_for_writes();
+         }},
+        {"splat u", [splat, &run] { splat(run.splat_rows); }},
+        {"build u", [build, &to] { build(to.rows); }},
+        {"splat v",
+         [splat, &run, &to] {
+             to.rows.bind(2);
+             splat(run.splat_columns);
+         }},
+        {"build v", [build, &to] { build(to.columns); }},
+    };
+    result.times.resize(result.steps.size());
+    return result;
+}
+
+/// Runs one pipeline and returns the sum of its steps in milliseconds.
+double time_once(pipeline& each, gl::stopwatch& watch) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < each.steps.size(); ++i) {
+        watch.start();
+        each.steps[i].second();
+        each.times[i].push_back(watch.stop());
+        sum += each.times[i].back();
+    }
+    each.sums.push_back(sum);
+    return sum;
+}
+
+int run(int rounds, const std::string& part) {
+    const gl::headless_context context;
+    bench b;
+    b.draw_view();
+    b.position.bind(0);
+    b.normal.bind(1);
+    gl::buffer bounds(16, nullptr, GL_DYNAMIC_DRAW);
+    bounds.bind_base(GL_SHADER_STORAGE_BUFFER, 5);
+    const programs with;
+    std::list<tables> sizes;
+    std::vector<pipeline> all;
+    for (const int cells : {64, 128, 256, 512, 1024, 2048, 4096}) {
+        tables& to = sizes.emplace_back(cells);
+        for (const int every : {1, 2, 4}) {
+            pipeline made = make_pipeline(with, bounds, to, every);
+            if ((cells <= 512 || every == 1) && made.name.find(part) != std::string::npos) {
+                all.push_back(std::move(made));
+            }
+        }
+    }
+    std::size_t covered = 0;
+    for (const glm::vec4& p : b.position.read<glm::vec4>()) {
+        covered += p.w != 0.0f ? 1 : 0;
+    }
+    std::printf("%s, %zu triangles, %d x %d pixels, %.0f %% of them covered, %s, %d rounds\n",
+                context.info().renderer.c_str(), b.world.triangles.size(), view, view,
+                100.0 * static_cast<double>(covered) / (view * view),
+                gl::timing_name(gl::best_timing()), rounds);
+
+    std::vector<double> g_buffer;
+    std::vector<std::vector<double>> ratios(all.size());
+    for (int round = -1; round < rounds; ++round) { // the first warms up
+        b.watch.start();
+        b.draw_view();
+        const double drawn = b.watch.stop();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            ratios[i].push_back(time_once(all[i], b.watch) / drawn);
+        }
+        g_buffer.push_back(drawn);
+        if (round < 0) {
+            g_buffer.clear();
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                ratios[i].clear();
+                all[i].sums.clear();
+                all[i].times.assign(all[i].steps.size(), {});
+            }
+        }
+    }
+    gl::check("passes_bench");
+    std::printf("G-buffer pass: %.2f ms\n%-26s", median(g_buffer), "ms");
+    for (const char* name : {"view", "splat u", "build u", "splat v", "build v", "sum", "ratio"}) {
+        std::printf("%9s", name);
+    }
+    std::printf("\n");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        std::printf("%-26s", all[i].name.c_str());
+        for (const std::vector<double>& times : all[i].times) {
+            std::printf("%9.2f", median(times));
+        }
+        std::printf("%9.2f%9.3f\n", median(all[i].sums), median(ratios[i]));
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 11, argc > 2 ? argv[2] : "");
+    } catch (const gl::error& problem) {
+        std::fprintf(stderr, "passes_bench: %s\n", problem.what());
+        return 1;
+    }
+}
