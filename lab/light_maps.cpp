@@ -226,8 +226,22 @@ light_maps lispsm_maps(const scene& world, const ws::frustum<double>& camera,
         for (std::size_t k = 0; k < seen.receivers.count; ++k) {
             body.emplace_back(seen.receivers.vertices[k]);
         }
+        // casters reach to the light itself: depth begins at a share of the distance, as elsewhere
+        const bool placed = light.kind != ws::light_kind::directional;
+        const glm::dvec3 axis = glm::normalize(light.direction);
+        const glm::dvec3 apex = light.position - camera.eye;
+        const double least = near_share * farthest_along(world.box, light.position, axis);
         for (std::size_t k = 0; k < seen.casters.count; ++k) {
-            casters.emplace_back(seen.casters.vertices[k]);
+            const glm::dvec3 caster(seen.casters.vertices[k]);
+            if (!placed || glm::dot(caster - apex, axis) >= least) {
+                casters.push_back(caster);
+            }
+        }
+        for (std::size_t k = 0; placed && k < body.size(); ++k) {
+            const double along = glm::dot(body[k] - apex, axis);
+            if (along > least) {
+                casters.push_back(apex + (body[k] - apex) * (least / along));
+            }
         }
         ws::lispsm_options<double> options;
         options.casters = casters;
@@ -237,6 +251,7 @@ light_maps lispsm_maps(const scene& world, const ws::frustum<double>& camera,
         if (!ws::any(warped.flags, ws::status::light_inside_body | ws::status::unbounded |
                                        ws::status::invalid_input | ws::status::out_of_range)) {
             map.matrix = warped.matrix * glm::translate(glm::dmat4(1.0), -camera.eye);
+            map.linear = {warped.depth_scale, warped.depth_shift, warped.depth_centre};
         }
     }
     return result;

@@ -16,15 +16,17 @@ namespace lab {
 
 /// Which of a method's maps a point of the scene is looked up in; mirrored in shaders/light.glsl.
 enum class map_choice {
-    single = 0,    ///< there is one
-    cube_face = 1, ///< the face of the light's cube, in the order of `warpshadow::cube_lookup`
-    view_depth = 2 ///< by depth along the view axis, nearest first
+    single = 0,     ///< there is one
+    cube_face = 1,  ///< the face of the light's cube, in the order of `warpshadow::cube_lookup`
+    view_depth = 2, ///< by depth along the view axis, nearest first
+    hemisphere = 3  ///< front and back of a paraboloid pair, see lab/omni.hpp
 };
 
 /// One shadow map.
 struct light_map {
     glm::dmat4 matrix{1.0}; ///< clip space (OpenGL) from the world, before a crop on the device
     bool used = true;       ///< false: nothing in view receives light from it, it is not drawn
+    glm::dvec3 linear{1.0, 0.0, 0.0}; ///< of `warpshadow::linear_depth`
 };
 
 /// All maps of a method, and what choosing them met.

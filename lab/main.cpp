@@ -2,6 +2,8 @@
 // wrong against ray tracing, and writes a report.
 #include "gl/context.hpp"
 #include "gl/timer.hpp"
+#include "lab/bias_run.hpp"
+#include "lab/figures.hpp"
 #include "lab/measure.hpp"
 #include "lab/methods.hpp"
 #include "lab/options.hpp"
@@ -148,25 +150,52 @@ class view_runner {
                 if ((traces && map != wanted_.maps.front()) || renderer.why_not(method, light)) {
                     continue;
                 }
-                lab::stop_if_asked();
-                progress_.show(work.world.name + " " + method +
-                               (traces ? std::string() : std::string(" ") + std::to_string(map)));
-                lab::run_record record{work.world.name,  camera.label, light.label, method,
-                                       traces ? 0 : map, {},           {}};
-                record.result =
-                    traces
-                        ? run_ray_tracer(rays, work.world, samples, light, wanted_.repeat)
-                        : renderer.run(method, {camera, light, map, wanted_.seed, wanted_.repeat});
-                record.against_truth =
-                    lab::compare(samples, truth.shadowed, record.result.shadowed);
-                all_.runs.push_back(std::move(record));
-                progress_.advance();
+                for (const std::optional<lab::bias_choice>& bias : biases()) {
+                    if (bias && renderer.why_not(method, light, *bias)) {
+                        continue;
+                    }
+                    lab::stop_if_asked();
+                    progress_.show(
+                        work.world.name + " " + method +
+                        (traces ? std::string() : std::string(" ") + std::to_string(map)));
+                    lab::run_record record{work.world.name,  camera.label, light.label, method,
+                                           traces ? 0 : map, {},           {}};
+                    if (traces) {
+                        record.result =
+                            run_ray_tracer(rays, work.world, samples, light, wanted_.repeat);
+                        record.against_truth =
+                            lab::compare(samples, truth.shadowed, record.result.shadowed);
+                    } else {
+                        lab::run_method(record, renderer,
+                                        {camera, light, map, wanted_.seed, wanted_.repeat, bias,
+                                         wanted_.filter},
+                                        samples, truth.shadowed);
+                        if (!record.result.light.empty()) {
+                            record.filter = lab::filter_name(wanted_.filter.kind);
+                        }
+                    }
+                    all_.runs.push_back(std::move(record));
+                    progress_.advance();
+                    if (traces) {
+                        break;
+                    }
+                }
             }
         }
         return pictures(work, rays, samples, truth, camera, light, first);
     }
 
   private:
+    /// Nothing where no bias was asked for.
+    std::vector<std::optional<lab::bias_choice>> biases() const {
+        std::vector<std::optional<lab::bias_choice>> result(wanted_.biases.begin(),
+                                                            wanted_.biases.end());
+        if (result.empty()) {
+            result.emplace_back();
+        }
+        return result;
+    }
+
     lab::view_pictures pictures(const job& work, const lab::ray_tracer& rays,
                                 const lab::g_buffer_samples& samples,
                                 const lab::traced_shadows& truth, const lab::camera_view& camera,
@@ -197,9 +226,13 @@ class view_runner {
             if (run.map != 0) {
                 const std::string map = std::string("m") + std::to_string(run.map);
                 const auto name = [&](const std::string& kind) {
-                    return lab::picture_name({work.world.name, c, l, map, run.method + kind});
+                    return lab::picture_name(
+                        {work.world.name, c, l, map,
+                         run.method + (run.bias ? "-" + *run.bias : std::string()) + kind});
                 };
-                const lab::picture plain = shader.shade(run.result.shadowed);
+                const lab::picture plain = run.result.light.empty()
+                                               ? shader.shade(run.result.shadowed)
+                                               : shader.shade(run.result.light);
                 lab::picture marked = plain;
                 lab::paint_red(marked, run.against_truth.wrong);
                 write(name(""), plain);
@@ -217,6 +250,8 @@ class view_runner {
             // one value per pixel, which nothing needs any more
             run.result.pictures.clear();
             run.result.shadowed = {};
+            run.result.biases = {};
+            run.result.light = {};
             run.against_truth.wrong = {};
         }
         return view;
@@ -248,12 +283,16 @@ void run_lab(const lab::options& wanted) {
     all.view = wanted.view;
     std::size_t steps = 0;
     for (const job& work : jobs) {
-        steps += work.cameras.size() * work.lights.size() * wanted.methods.size() *
-                 wanted.maps.size() *
-                 (wanted.path.empty() ? 1 : static_cast<std::size_t>(wanted.frames));
+        steps += work.cameras.size() * work.lights.size() *
+                 (wanted.preset.empty()
+                      ? wanted.methods.size() * wanted.maps.size() *
+                            std::max<std::size_t>(wanted.biases.size(), 1) *
+                            (wanted.path.empty() ? 1 : static_cast<std::size_t>(wanted.frames))
+                      : lab::runs_of_figure(wanted.preset));
     }
     std::vector<lab::view_pictures> views;
     std::vector<lab::path_pictures> paths;
+    std::vector<lab::figure_pictures> figures;
     {
         lab::progress_bar progress(steps);
         for (const job& work : jobs) {
@@ -262,15 +301,27 @@ void run_lab(const lab::options& wanted) {
             const lab::ray_tracer rays(work.world);
             for (const lab::light_view& light : work.lights) {
                 for (const std::string& method : wanted.methods) {
+                    if (!wanted.preset.empty()) {
+                        break; // a figure has methods of its own
+                    }
                     if (const auto reason = renderer.why_not(method, light)) {
                         all.left_out.push_back({work.world.name, light.label, method, *reason});
+                        continue;
+                    }
+                    for (const lab::bias_choice& bias : wanted.biases) {
+                        if (const auto reason = renderer.why_not(method, light, bias)) {
+                            all.left_out.push_back({work.world.name, light.label, method, *reason});
+                        }
                     }
                 }
             }
             view_runner runner(wanted, all, folder, progress);
             for (const lab::camera_view& camera : work.cameras) {
                 for (const lab::light_view& light : work.lights) {
-                    if (wanted.path.empty()) {
+                    if (!wanted.preset.empty()) {
+                        figures.push_back(lab::run_figure(wanted, work.world, renderer, rays,
+                                                          camera, light, all, folder, progress));
+                    } else if (wanted.path.empty()) {
                         views.push_back(runner.run(work, renderer, rays, camera, light));
                     } else {
                         paths.push_back(lab::run_path(wanted, work.world, renderer, rays, camera,
@@ -281,7 +332,11 @@ void run_lab(const lab::options& wanted) {
         }
         progress.show("report");
         folder.write("results.json", lab::json_of(all));
-        folder.write("report.html", lab::html_of(all, views, paths));
+        std::vector<std::string> sections;
+        for (const lab::figure_pictures& each : figures) {
+            sections.push_back(lab::figure_section(all, each));
+        }
+        folder.write("report.html", lab::html_of(all, views, paths, sections));
     }
     const std::filesystem::path place = folder.publish();
     std::fputs(lab::table_of(all).c_str(), stdout);

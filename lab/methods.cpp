@@ -1,6 +1,8 @@
 #include "lab/methods.hpp"
 
+#include "lab/bias_passes.hpp"
 #include "lab/light_picture.hpp"
+#include "lab/omni.hpp"
 #include "lab/passes.hpp"
 #include "lab/statistics.hpp"
 #include "lab/warp_pictures.hpp"
@@ -21,7 +23,8 @@ enum class map_base {
     whole_scene, ///< all that the light reaches
     stable,      ///< the ball around the view, on a fixed grid
     minimal,     ///< what the camera can see
-    lispsm       ///< the same, warped by one matrix
+    lispsm,      ///< the same, warped by one matrix
+    all_around   ///< faces or hemispheres of a point light
 };
 
 /// A method as the steps that it takes.
@@ -32,6 +35,7 @@ struct method {
     bool desired_view = false; ///< crop to the lit view samples
     bool fitted = false;       ///< projective warp fitted to the lit view samples
     bool warp = false;         ///< tables, and triangles cut for them
+    omni_way omni = {};        ///< of maps all around
 };
 
 constexpr std::array methods{
@@ -47,6 +51,29 @@ constexpr std::array methods{
     method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
     method{.name = "notw", .desired_view = true, .warp = true},
     method{.name = "notw-nodv", .warp = true},
+    method{.name = "cube6", .base = map_base::all_around},
+    method{.name = "cube6-cull", .base = map_base::all_around, .omni = {.cull_objects = true}},
+    method{.name = "cube6-efc",
+           .base = map_base::all_around,
+           .omni = {.cull_maps = true, .cull_objects = true}},
+    method{.name = "cube6-cull-gs",
+           .base = map_base::all_around,
+           .omni = {.cull_objects = true, .layered = true}},
+    method{.name = "cube6-efc-gs",
+           .base = map_base::all_around,
+           .omni = {.cull_maps = true, .cull_objects = true, .layered = true}},
+    method{.name = "dpsm", .base = map_base::all_around, .omni = {.hemispheres = true}},
+    method{.name = "dpsm-cull",
+           .base = map_base::all_around,
+           .omni = {.hemispheres = true, .cull_objects = true}},
+    method{.name = "dpsm-pc",
+           .base = map_base::all_around,
+           .omni = {.hemispheres = true, .cull_maps = true, .cull_objects = true}},
+    method{.name = "cube-notw",
+           .base = map_base::all_around,
+           .desired_view = true,
+           .warp = true,
+           .omni = {.cull_maps = true}},
 };
 
 constexpr auto names = [] {
@@ -70,6 +97,11 @@ const method& find_method(std::string_view name) {
 /// seen of its cube.
 bool follows_the_view(const method& how) {
     return how.base != map_base::whole_scene || how.desired_view;
+}
+
+/// Whether the steps that all kinds of light share draw the maps, and not those of lab/omni.hpp.
+bool drawn_one_by_one(const method& how) {
+    return how.base != map_base::all_around || how.warp;
 }
 
 /// Cosine between normal and light, or 0 outside a spot light's cone; as lit_cosine in GLSL.
@@ -113,6 +145,9 @@ struct renderer::state {
             return whole_scene_maps(world, request.light);
         }
         const ws::frustum<double> camera = camera_frustum(world, request.camera, gpu.view());
+        if (how.base == map_base::all_around) {
+            return omni_maps(world, std::span(&camera, 1), request.light, how.omni);
+        }
         if (how.base == map_base::stable) {
             return stable_maps(world, camera, request.light, request.map_size);
         }
@@ -134,9 +169,13 @@ struct renderer::state {
             gpu.timed_pass("depth range", [&] { split(how, camera, chosen); });
             gpu.use(seen, chosen, request.light.light);
         }
+        if (!drawn_one_by_one(how)) {
+            gpu.timed_pass("shadow map", [&] { omni.draw(maps, chosen, request.light, how.omni); });
+            culling_us.push_back(omni.culling_us());
+        }
         memory.bends.resize(chosen.maps.size());
         for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
-            if (!chosen.maps[i].used) {
+            if (!chosen.maps[i].used || !drawn_one_by_one(how)) {
                 continue;
             }
             if (how.desired_view) {
@@ -151,11 +190,33 @@ struct renderer::state {
                 gpu.build_tables(maps, i, count);
                 gpu.draw_warped_map(maps, i, count);
             } else {
-                gpu.timed_pass("shadow map", [&] { gpu.draw_plain_map(maps, i); });
+                gpu.timed_pass("shadow map", [&] {
+                    if (request.bias) {
+                        biased.draw_map(maps, i, chosen, *request.bias);
+                    } else {
+                        gpu.draw_plain_map(maps, i);
+                    }
+                });
             }
         }
-        gpu.timed_pass("shadow test", [&] { gpu.test_shadows(maps, chosen, how.warp); });
+        gpu.timed_pass("shadow test", [&] {
+            if (request.bias) {
+                biased.test(maps, chosen, how.warp, *request.bias);
+            } else {
+                test(how, request.light, maps, chosen);
+            }
+        });
         return chosen;
+    }
+
+    /// Shadow test of the samples in use.
+    void test(const method& how, const light_view& light, map_resources& maps,
+              const light_maps& chosen) {
+        if (how.omni.hemispheres) {
+            omni.test_hemispheres(maps, light);
+        } else {
+            gpu.test_shadows(maps, chosen, how.warp);
+        }
     }
 
     /// Splits the depths of the lit samples in equal ratios (practical split of quality alone).
@@ -253,8 +314,11 @@ struct renderer::state {
     }
 
     passes gpu;
+    omni_passes omni{gpu};
+    bias_passes biased{gpu};
     g_buffer seen, seen_before;
-    std::vector<double> fit_us; ///< times of the projective fit alone
+    std::vector<double> fit_us;     ///< times of the projective fit alone
+    std::vector<double> culling_us; ///< times of sorting objects to the maps of a point light
     bool remembers = false;
     // kept while a camera moves, so that frames do not begin with allocations
     std::map<std::string, map_resources, std::less<>> moving_maps;
@@ -293,6 +357,12 @@ std::optional<std::string> renderer::why_not(std::string_view name, const light_
         return std::nullopt;
     }
     const method& how = find_method(name);
+    if (how.base == map_base::all_around && light.light.kind != ws::light_kind::point) {
+        return "faces of a cube and paraboloids are for a light that shines all around";
+    }
+    if (name == "notw" && light.light.kind == ws::light_kind::point) {
+        return "for the faces of a point light's cube it is called cube-notw";
+    }
     if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
         return "a texel of a fixed size has no meaning for a light with a position";
     }
@@ -301,6 +371,34 @@ std::optional<std::string> renderer::why_not(std::string_view name, const light_
     }
     if (light.light.kind == ws::light_kind::point && !follows_the_view(how)) {
         return "a point light shines all around and has no single map";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> renderer::why_not(std::string_view name, const light_view& light,
+                                             const bias_choice& bias) const {
+    if (name == "raytraced") {
+        return std::nullopt;
+    }
+    const method& how = find_method(name);
+    if (how.omni.hemispheres) {
+        return bias.label + " is for maps of depth, and paraboloids hold distances";
+    }
+    if (bias.depth == depth_kind::hyperbolic) {
+        return std::nullopt;
+    }
+    if (!drawn_one_by_one(how)) {
+        return bias.label + " is for maps drawn one by one";
+    }
+    if (how.warp) {
+        return bias.label + " is for maps without tables";
+    }
+    if (bias.depth == depth_kind::linear && light.light.kind == ws::light_kind::point) {
+        return bias.label + " is for lights with one map";
+    }
+    if (bias.depth == depth_kind::linear && how.base == map_base::lispsm &&
+        light.light.kind != ws::light_kind::directional) {
+        return bias.label + " is for sunlight where the map's own matrix warps";
     }
     return std::nullopt;
 }
@@ -332,6 +430,7 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     };
 
     s.fit_us.clear();
+    s.culling_us.clear();
     // the first frame warms up and, with tables, finds how long the lists must be
     do {
         s.gpu.forget_counts();
@@ -365,6 +464,14 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         result.passes.push_back({pass, median(times[pass])});
     }
     result.shadowed = s.gpu.shadowed();
+    if (request.bias) {
+        result.biases = s.biased.measure(maps, chosen, how.warp, *request.bias);
+    }
+    if (request.filter.kind != shadow_filter::none && !how.omni.hemispheres) {
+        result.light = s.biased.light(maps, chosen, how.warp, request.bias.value_or(bias_choice{}),
+                                      request.filter, s.seen,
+                                      camera_frustum(s.gpu.world(), request.camera, s.gpu.view()));
+    }
     result.bytes = maps.bytes() + (how.warp ? s.gpu.list_bytes() : 0);
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;
@@ -373,6 +480,17 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         result.triangles = 0;
         for (const triangle_counts& each : s.gpu.counted()) {
             result.triangles += each.vertex_count / 3;
+        }
+    }
+    if (!drawn_one_by_one(how)) {
+        result.triangles = s.omni.triangles();
+        result.bytes += s.omni.bytes();
+        if (how.omni.cull_objects) {
+            result.cpu_setup_us.emplace_back("objects to maps", median(s.culling_us));
+        }
+        if (how.omni.hemispheres) {
+            result.cpu_setup_us.emplace_back("cut triangles, once per light",
+                                             1e3 * s.omni.cutting_ms());
         }
     }
     result.status = s.guards(how, chosen, maps);
@@ -410,9 +528,20 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     result.shadowed = s.gpu.shadowed();
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;
+    light_memory copy = before; // the same frame once more, pass by pass
+    std::map<std::string, std::vector<double>> times;
+    s.gpu.time_into(&times);
+    s.frame(how, request, copy, maps, false);
+    s.gpu.begin_frame();
+    s.gpu.time_into(nullptr);
+    for (const auto& [pass, ms] : times) {
+        if (pass != "g-buffer" && pass != "shadow test") {
+            result.shadow_map_ms += median(ms);
+        }
+    }
     if (s.remembers) {
         s.gpu.use(s.seen_before);
-        s.gpu.test_shadows(maps, chosen, how.warp);
+        s.test(how, request.light, maps, chosen);
         result.shadowed_before = s.gpu.shadowed();
     }
     return result;

@@ -1,6 +1,7 @@
 // Shadow methods on the GPU, as the lab runs and measures them.
 #pragma once
 
+#include "lab/bias.hpp"
 #include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
 
@@ -22,9 +23,11 @@ namespace lab {
 struct view_request {
     camera_view camera;
     light_view light;
-    int map_size;  ///< texels along each side of the shadow map
-    unsigned seed; ///< of anything random
-    int repeat;    ///< frames timed after the warm-up
+    int map_size;                                   ///< texels along each side of the shadow map
+    unsigned seed;                                  ///< of anything random
+    int repeat;                                     ///< frames timed after the warm-up
+    std::optional<bias_choice> bias = std::nullopt; ///< to be measured; else the plane's
+    filter_choice filter = {};                      ///< for pictures
 };
 
 /// View samples, row 0 at the bottom of the picture.
@@ -65,6 +68,8 @@ struct method_result {
     double angle;          ///< of the map's sides to the axes of the light, radians
     std::vector<std::string> status; ///< names of the guards that fired
     std::vector<named_picture> pictures;
+    std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for
+    std::vector<float> light;        ///< share per view sample, where a filter was asked for
 };
 
 /// One frame of a moving camera.
@@ -72,7 +77,8 @@ struct moving_frame {
     std::vector<std::uint8_t> shadowed; ///< per view sample, as in `method_result`
     /// The answers of this frame's maps to the samples of the frame before; empty in the first.
     std::vector<std::uint8_t> shadowed_before;
-    double frame_ms; ///< one frame, without warm-up
+    double frame_ms;      ///< one frame, without warm-up
+    double shadow_map_ms; ///< of the passes between the G-buffer and the shadow test, run by itself
     int maps;
     double angle;
 };
@@ -95,6 +101,10 @@ class renderer {
     /// Why the method does not apply to the light, or nothing when it does.
     [[nodiscard]] std::optional<std::string> why_not(std::string_view method,
                                                      const light_view& light) const;
+
+    /// Why a bias does not apply to a method that applies to the light, or nothing when it does.
+    [[nodiscard]] std::optional<std::string>
+    why_not(std::string_view method, const light_view& light, const bias_choice& bias) const;
 
     /// Runs a method other than "raytraced", which needs no GPU.
     method_result run(std::string_view method, const view_request& request);

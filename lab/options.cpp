@@ -1,5 +1,7 @@
 #include "lab/options.hpp"
 
+#include "lab/figures.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -18,6 +20,21 @@ constexpr const char* examples = R"(Cameras and lights:
   --light spot:x,y,z,tx,ty,tz,angle   position, target, full cone angle in degrees
   --light point:x,y,z                 position
 
+Biases (--bias), each measured by its acne and by how far shadows recede:
+  plane                     the receiver's plane at the texel's centre, the default
+  none                      the receiver's own depth
+  constant[:VALUE]          less VALUE, 0 to 1 of the depth range; else the least without acne
+  slope[:FACTOR[:UNITS]]    less the slope of the depth over a texel, as graphics APIs have it
+  footprint                 less what the texel's footprint takes
+  linear, back-face         none, with the light's own depth, or with back faces in the map;
+                            slope+linear, footprint+back-face and so on
+
+Figures (--preset), over a scene, camera and light of your choice:
+  figure6   biases (Scherzer 2005, figure 6): none, constant, slope-scale and footprint, each with
+            hyperbolic and linear depth and with back faces, for lispsm, fitted and sm
+  figure8   blur of the shadows in the picture (figure 8): 0 to 16 iterations, the same everywhere
+            and less with depth, for sm and lispsm
+
 Paths (--path), all with nothing but the camera in motion:
   yaw       turns on the spot, 0.1 degrees a frame
   forward   moves towards its target, a thousandth of the distance a frame
@@ -31,6 +48,8 @@ Examples:
   warpshadow-lab --scene leaves,colonnade --map 256,512,1024 --out report
   warpshadow-lab --scene house.glb --camera=-2.6,1.5,1.6,2.5,0.3,-1.5,65 --light sun:0.3,-1,0.2
   warpshadow-lab --scene outdoor --path yaw --frames 120 --methods sm,min-sm,dv
+  warpshadow-lab --scene colonnade --methods sm,lispsm --bias constant,slope,footprint
+  warpshadow-lab --preset figure6 --out figure6
   warpshadow-lab --scene outdoor --camera 0 --camera 2 --methods sm,notw --view 1920x1080
 )";
 
@@ -152,6 +171,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     std::string repeat;
     std::string seed;
     std::string frames;
+    std::vector<std::string> biases;
+    std::string filter;
     const auto list = [&](const char* name, std::vector<std::string>& to, const char* about) {
         app.add_option(name, to, about)->allow_extra_args(false);
     };
@@ -165,6 +186,11 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     list("--map", maps, "Comma-separated sizes of the shadow map in texels (512)");
     app.add_option("--view", view, "Size of the picture, WxH (1024x768)");
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
+    list("--bias", biases, "Comma-separated biases to compare (plane, and not measured)");
+    app.add_option("--filter", filter,
+                   "Shadows in the pictures: none, pcf (2 x 2 texels), blur (the same, blurred in "
+                   "the picture); wrong pixels are counted without (none)");
+    app.add_option("--preset", result.preset, "Redo a figure of Scherzer 2005: figure6 or figure8");
     app.add_option("--path", result.path,
                    "Move the camera and follow every frame: yaw, forward, strafe, orbit, walk or a "
                    "file");
@@ -232,6 +258,45 @@ std::optional<options> parse_options(int argc, const char* const* argv,
                             "'");
         }
         result.view = {*width, *height};
+    }
+    std::vector<std::string> bias_texts;
+    replace_if_given(bias_texts, biases);
+    for (const std::string& text : bias_texts) {
+        result.biases.push_back(parse_bias(text));
+    }
+    if (!filter.empty()) {
+        result.filter.kind = parse_filter(filter);
+    }
+    if (!result.path.empty() && !(biases.empty() && filter.empty())) {
+        throw bad_input("--bias and --filter are for a camera that stands still, not for --path");
+    }
+    if (!result.preset.empty()) {
+        if (!(wanted.empty() && biases.empty() && filter.empty() && result.path.empty())) {
+            throw bad_input("--preset brings its own --methods, --bias and --filter, and knows no "
+                            "--path");
+        }
+        const figure_defaults defaults = defaults_of_figure(result.preset);
+        const auto take = [](std::vector<std::string>& target, const auto& given,
+                             const char* value) {
+            if (given.empty()) {
+                target = {value};
+            }
+        };
+        take(result.scenes, scenes, defaults.scene);
+        take(result.cameras, cameras, defaults.camera);
+        take(result.lights, lights, defaults.light);
+        if (maps.empty()) {
+            result.maps = {defaults.map};
+        }
+        if (view.empty()) {
+            result.view = defaults.view;
+        }
+        if (repeat.empty()) {
+            result.repeat = 1;
+        }
+        if (result.maps.size() != 1) {
+            throw bad_input("--preset wants one size of the map");
+        }
     }
     if (!repeat.empty()) {
         result.repeat = positive(repeat, "--repeat");

@@ -1,6 +1,7 @@
 // Command line of warpshadow-lab.
 #pragma once
 
+#include "lab/bias.hpp"
 #include "lab/scene.hpp"
 
 #include <glm/glm.hpp>
@@ -22,6 +23,9 @@ struct options {
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
+    std::vector<bias_choice> biases; ///< to be compared; none: the exact test, not measured
+    filter_choice filter;            ///< of the shadows in pictures
+    std::string preset;              ///< a figure to redo, see lab/figures.hpp, or none
     std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
     int frames = 60;  ///< along the path
     unsigned seed = 1;

@@ -84,6 +84,7 @@ map_resources::tables::tables(int size)
 
 map_resources::map_resources(int map_size, std::size_t maps, bool warped)
     : size(map_size), depth(GL_DEPTH_COMPONENT32F, map_size, map_size, static_cast<int>(maps)) {
+    all_layers = gl::framebuffer::of_layers(depth);
     for (std::size_t i = 0; i < maps; ++i) {
         targets.push_back(gl::framebuffer::of_layer(depth, static_cast<int>(i)));
         desired.emplace_back(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW);
@@ -126,11 +127,25 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     test_warped_ = compute("shadow_test.comp", {"WARPED"});
     for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &splat_rows_,
                                        &splat_columns_, &test_plain_, &test_warped_}) {
-        program->set("g_position", static_cast<int>(unit_position));
-        program->set("g_normal", static_cast<int>(unit_normal));
-        program->set("shadow_map", static_cast<int>(unit_map));
+        set_units(*program);
     }
     set_capacity(2 * world_.triangles.size() + 65536, 65536);
+}
+
+void passes::set_units(const gl::program& program) {
+    program.set("g_position", static_cast<int>(unit_position));
+    program.set("g_normal", static_cast<int>(unit_normal));
+    program.set("shadow_map", static_cast<int>(unit_map));
+}
+
+void passes::bind_depth(const map_resources& maps) {
+    maps.depth.bind(unit_map);
+}
+
+void passes::bind_tables(const map_resources& maps, std::size_t index) {
+    maps.warps[index].rows.bind(unit_rows);
+    maps.warps[index].columns.bind(unit_columns);
+    maps.warps[index].centres.bind(unit_centres);
 }
 
 std::vector<glm::vec4> passes::face_normals() const {
@@ -400,7 +415,7 @@ void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count)
 }
 
 void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool warped) {
-    maps.depth.bind(unit_map);
+    bind_depth(maps);
     mask_.bind_image(0, GL_WRITE_ONLY);
     if (!warped) {
         test_plain_.dispatch(view_.x, view_.y);
@@ -414,9 +429,7 @@ void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool wa
             continue;
         }
         select_map(i);
-        maps.warps[i].rows.bind(unit_rows);
-        maps.warps[i].columns.bind(unit_columns);
-        maps.warps[i].centres.bind(unit_centres);
+        bind_tables(maps, i);
         test_warped_.dispatch(view_.x, view_.y);
     }
     wait_for_writes();

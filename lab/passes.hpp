@@ -41,6 +41,7 @@ struct map_resources {
     int size;
     gl::texture depth; ///< one layer per map
     std::vector<gl::framebuffer> targets;
+    gl::framebuffer all_layers;      ///< of all maps, for layered drawing
     std::vector<gl::buffer> desired; ///< bounds of the desired view per map
     std::vector<tables> warps;       ///< per map, or none
     [[nodiscard]] std::size_t bytes() const;
@@ -115,15 +116,24 @@ class passes {
     [[nodiscard]] glm::mat4 matrix_in_use(std::size_t index) const;
     [[nodiscard]] std::vector<std::uint8_t> shadowed() const;
 
+    /// What other passes over the same scene and view need.
+    [[nodiscard]] gl::program link(const char* vertex, const char* fragment) const;
+    [[nodiscard]] gl::program compute(const char* file,
+                                      const std::vector<std::string>& defines = {}) const;
+    /// Tells a program where the G-buffer and the shadow map are bound.
+    static void set_units(const gl::program& program);
+    static void bind_depth(const map_resources& maps);
+    static void bind_tables(const map_resources& maps, std::size_t index);
+    [[nodiscard]] const gl::mesh& mesh() const { return mesh_; }
+    [[nodiscard]] const gl::buffer& face_normal_buffer() const { return normals_; }
+    [[nodiscard]] gl::texture& mask() { return mask_; }
+
     [[nodiscard]] gl::stopwatch& watch() { return watch_; }
     [[nodiscard]] const scene& world() const { return world_; }
     [[nodiscard]] glm::ivec2 view() const { return view_; }
 
   private:
     [[nodiscard]] std::vector<glm::vec4> face_normals() const;
-    [[nodiscard]] gl::program link(const char* vertex, const char* fragment) const;
-    [[nodiscard]] gl::program compute(const char* file,
-                                      const std::vector<std::string>& defines = {}) const;
     void set_capacity(std::size_t ready_count, std::size_t waiting_count);
     void note(const char* name, double ms);
     void select_map(std::size_t index);

@@ -173,6 +173,7 @@ path_means means_of(const path_record& record) {
     int wrong_frames = 0;
     int flip_frames = 0;
     std::vector<double> times;
+    std::vector<double> shadow_map_times;
     for (std::size_t i = 0; i < record.frames.size(); ++i) {
         const path_frame& frame = record.frames[i];
         wrong += frame.wrong_ratio.value_or(0.0);
@@ -180,6 +181,7 @@ path_means means_of(const path_record& record) {
         wrong_frames += frame.wrong_ratio ? 1 : 0;
         flip_frames += frame.flip_ratio ? 1 : 0;
         times.push_back(frame.frame_ms);
+        shadow_map_times.push_back(frame.shadow_map_ms);
         result.maps += static_cast<double>(frame.maps) / static_cast<double>(record.frames.size());
         if (i > 0) {
             // a quarter turn maps the sides of a square map to each other
@@ -195,6 +197,7 @@ path_means means_of(const path_record& record) {
         result.flip_ratio = flips / flip_frames;
     }
     result.frame_ms = median(times);
+    result.shadow_map_ms = median(shadow_map_times);
     return result;
 }
 

@@ -52,6 +52,7 @@ struct path_frame {
     std::optional<double> flip_ratio; ///< nothing in the first frame
     double angle;                     ///< of the map to the light's axes, radians
     double frame_ms;
+    double shadow_map_ms; ///< of the passes between the G-buffer and the shadow test
     int maps;
 };
 
@@ -70,8 +71,9 @@ struct path_record {
 struct path_means {
     std::optional<double> wrong_ratio;
     std::optional<double> flip_ratio;
-    double largest_turn; ///< of the map between two frames, radians
-    double frame_ms;     ///< median
+    double largest_turn;  ///< of the map between two frames, radians
+    double frame_ms;      ///< median
+    double shadow_map_ms; ///< median
     double maps;
 };
 path_means means_of(const path_record& record);

@@ -65,6 +65,7 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
             }
             row.angle = moved.angle;
             row.frame_ms = moved.frame_ms;
+            row.shadow_map_ms = moved.shadow_map_ms;
             row.maps = moved.maps;
             all.paths[each.record].frames.push_back(row);
             each.shadowed = std::move(moved.shadowed);

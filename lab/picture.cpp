@@ -103,14 +103,22 @@ shader::shader(const scene& world, const ray_tracer& rays, const g_buffer_sample
 }
 
 picture shader::shade(std::span<const std::uint8_t> shadowed) const {
+    return shade_with(
+        [&](std::size_t i) { return shadowed[i] != 0 ? glm::vec3(0.0f) : light_[i]; });
+}
+
+picture shader::shade(std::span<const float> light) const {
+    return shade_with([&](std::size_t i) { return light[i] * light_[i]; });
+}
+
+template <typename Light> picture shader::shade_with(Light light) const {
     picture result{size_.x, size_.y, {}};
     result.rgb.resize(dark_.size() * 3);
     std::size_t out = 0;
     for (int y = size_.y - 1; y >= 0; --y) {
         for (int x = 0; x < size_.x; ++x) {
             const auto i = static_cast<std::size_t>(y * size_.x + x);
-            const glm::vec3 c =
-                tone_mapped(dark_[i] + (shadowed[i] != 0 ? glm::vec3(0.0f) : light_[i]));
+            const glm::vec3 c = tone_mapped(dark_[i] + light(i));
             for (int k = 0; k < 3; ++k) {
                 result.rgb[out++] = srgb_byte(c[k]);
             }

@@ -27,8 +27,12 @@ class shader {
 
     /// The view with these shadows.
     [[nodiscard]] picture shade(std::span<const std::uint8_t> shadowed) const;
+    /// The view with these shares of the light, 0 to 1.
+    [[nodiscard]] picture shade(std::span<const float> light) const;
 
   private:
+    template <typename Light> [[nodiscard]] picture shade_with(Light light) const;
+
     glm::ivec2 size_;
     std::vector<glm::vec3> dark_;  ///< linear colour without the light
     std::vector<glm::vec3> light_; ///< what the light adds

@@ -34,6 +34,16 @@ std::string image(const png_file& source, const std::string& what, const char* k
            "\" loading=\"lazy\" src=\"data:image/png;base64," + base64(source.bytes) + "\">";
 }
 
+/// A method with its bias, if that was measured.
+std::string label_of(const run_record& run) {
+    return run.bias ? run.method + " " + *run.bias : run.method;
+}
+
+bool any_bias(const results& all) {
+    return std::any_of(all.runs.begin(), all.runs.end(),
+                       [](const run_record& run) { return run.bias.has_value(); });
+}
+
 /// Rank of a method in the order of first appearance; it decides the colour.
 std::size_t rank_of(const results& all, const std::string& method) {
     std::vector<std::string> seen;
@@ -43,7 +53,7 @@ std::size_t rank_of(const results& all, const std::string& method) {
         }
     };
     for (const run_record& run : all.runs) {
-        see(run.method);
+        see(label_of(run));
     }
     for (const path_record& path : all.paths) {
         see(path.method);
@@ -68,12 +78,12 @@ std::string plot_of(const results& all, const view_pictures& view) {
         if (!ratio || !(run.result.frame_ms_min > 0.0)) {
             continue;
         }
-        plot_series& of_method = series[rank_of(all, run.method)];
-        of_method.name = run.method;
+        plot_series& of_method = series[rank_of(all, label_of(run))];
+        of_method.name = label_of(run);
         const std::string size = run.map > 0 ? std::to_string(run.map) + "²" : "";
         of_method.points.push_back({run.result.frame_ms_median, run.result.frame_ms_min,
                                     run.result.frame_ms_max, 100.0 * *ratio, size,
-                                    run.method + (run.map > 0 ? " at " + size : "") + ": " +
+                                    label_of(run) + (run.map > 0 ? " at " + size : "") + ": " +
                                         short_number(100.0 * *ratio) + " %, " +
                                         ms_text(run.result.frame_ms_median) + " ms"});
     }
@@ -89,11 +99,22 @@ std::string cell(const std::string& text, bool number = true) {
     return number ? "<td class=\"n\">" + escaped(text) + "</td>" : "<td>" + escaped(text) + "</td>";
 }
 
+std::string bias_cells(const run_record& run) {
+    return cell(run.bias.value_or("–"), false) + cell(percent_text(run.bias_effect.acne_ratio)) +
+           cell(percent_text(run.bias_effect.leak_ratio)) +
+           cell(texels_text(run.bias_effect.displacement_texels));
+}
+
 std::string table(const results& all) {
     std::string html =
         "<div class=\"scroll\"><table>\n<thead><tr><th>scene</th><th>camera</th><th>light</th>"
-        "<th>method</th><th class=\"n\">map</th><th class=\"n\">wrong&nbsp;%</th>"
-        "<th class=\"n\">false shadow&nbsp;%</th><th class=\"n\">false light&nbsp;%</th>"
+        "<th>method</th><th class=\"n\">map</th>" +
+        std::string(any_bias(all) ? "<th>bias</th><th class=\"n\">acne&nbsp;%</th>"
+                                    "<th class=\"n\">leak&nbsp;%</th>"
+                                    "<th class=\"n\">displacement, texels</th>"
+                                  : "") +
+        "<th class=\"n\">wrong&nbsp;%</th><th class=\"n\">false shadow&nbsp;%</th><th "
+        "class=\"n\">false light&nbsp;%</th>"
         "<th class=\"n\">grazing wrong&nbsp;%</th><th class=\"n\">frame ms</th>"
         "<th class=\"n\">min–max</th><th class=\"n\">bytes</th><th class=\"n\">triangles</th>"
         "</tr></thead>\n<tbody>\n";
@@ -105,9 +126,10 @@ std::string table(const results& all) {
             grazing = static_cast<double>(c.grazing_wrong) / static_cast<double>(c.grazing_samples);
         }
         html += "<tr>" + cell(run.scene, false) + cell(run.camera, false) + cell(run.light, false) +
-                "<td><i class=\"dot c" + std::to_string(rank_of(all, run.method) % plot_colours) +
-                "\"></i>" + escaped(run.method) + "</td>" +
-                cell(run.map == 0 ? "–" : std::to_string(run.map)) +
+                "<td><i class=\"dot c" +
+                std::to_string(rank_of(all, label_of(run)) % plot_colours) + "\"></i>" +
+                escaped(run.method) + "</td>" + cell(run.map == 0 ? "–" : std::to_string(run.map)) +
+                (any_bias(all) ? bias_cells(run) : "") +
                 cell(percent_text(c.ratio(c.false_shadow + c.false_light))) +
                 cell(percent_text(c.ratio(c.false_shadow))) +
                 cell(percent_text(c.ratio(c.false_light))) + cell(percent_text(grazing)) +
@@ -159,16 +181,21 @@ std::string view_section(const results& all, const view_pictures& view) {
             continue; // the ray tracer itself
         }
         const comparison& c = run.against_truth;
-        html += "<article><h3><i class=\"dot c" +
-                std::to_string(rank_of(all, run.method) % plot_colours) + "\"></i>" +
-                escaped(run.method) + " <small>" + std::to_string(run.map) + "²</small></h3>\n<p>" +
-                percent_text(c.ratio(c.false_shadow + c.false_light)) + "&nbsp;% wrong, " +
-                ms_text(run.result.frame_ms_median) + "&nbsp;ms, " + bytes_text(run.result.bytes) +
-                "</p>\n" +
-                image(each.marked, view.scene + ", " + run.method + ", wrong pixels in red") +
-                "<div class=\"pair\">" + image(each.detail, "detail", " class=\"pixel\"") +
-                image(each.detail_marked, "detail, wrong pixels in red", " class=\"pixel\"") +
-                "</div>\n" + pass_list(run.result);
+        html +=
+            "<article><h3><i class=\"dot c" +
+            std::to_string(rank_of(all, label_of(run)) % plot_colours) + "\"></i>" +
+            escaped(label_of(run)) + " <small>" + std::to_string(run.map) + "²</small></h3>\n<p>" +
+            percent_text(c.ratio(c.false_shadow + c.false_light)) + "&nbsp;% wrong, " +
+            ms_text(run.result.frame_ms_median) + "&nbsp;ms, " + bytes_text(run.result.bytes) +
+            "</p>\n" +
+            (run.bias ? "<p>" + percent_text(run.bias_effect.acne_ratio) +
+                            "&nbsp;% acne, displacement " +
+                            texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels</p>\n"
+                      : "") +
+            image(each.marked, view.scene + ", " + run.method + ", wrong pixels in red") +
+            "<div class=\"pair\">" + image(each.detail, "detail", " class=\"pixel\"") +
+            image(each.detail_marked, "detail, wrong pixels in red", " class=\"pixel\"") +
+            "</div>\n" + pass_list(run.result);
         if (!each.explanations.empty()) {
             html += "<details><summary>inside the method</summary><div class=\"pair\">\n";
             for (const auto& [name, explained] : each.explanations) {
@@ -190,12 +217,14 @@ std::string path_section(const results& all, const path_pictures& seen) {
                        "</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>method</th>"
                        "<th class=\"n\">map</th><th class=\"n\">wrong&nbsp;%</th>"
                        "<th class=\"n\">flips&nbsp;%</th><th class=\"n\">largest turn&nbsp;°</th>"
-                       "<th class=\"n\">frame ms</th><th class=\"n\">maps</th></tr></thead>\n"
+                       "<th class=\"n\">frame ms</th><th class=\"n\">shadow map ms</th>"
+                       "<th class=\"n\">maps</th></tr></thead>\n"
                        "<tbody>\n";
     std::vector<frame_series> wrong;
     std::vector<frame_series> flips;
     std::vector<frame_series> angles;
     std::vector<frame_series> times;
+    std::vector<frame_series> shadow_map_times;
     std::vector<frame_series> maps;
     for (std::size_t i = seen.first; i < seen.first + seen.count; ++i) {
         const path_record& path = all.paths[i];
@@ -206,10 +235,11 @@ std::string path_section(const results& all, const path_pictures& seen) {
                 cell(percent_text(means.wrong_ratio)) +
                 cell(means.flip_ratio ? fixed(100.0 * *means.flip_ratio, 3) : "-") +
                 cell(fixed(glm::degrees(means.largest_turn), 2)) + cell(ms_text(means.frame_ms)) +
-                cell(short_number(means.maps)) + "</tr>\n";
+                cell(ms_text(means.shadow_map_ms)) + cell(short_number(means.maps)) + "</tr>\n";
         const std::string name =
             path.method + (seen.one_size ? "" : " " + std::to_string(path.map));
-        for (std::vector<frame_series>* const each : {&wrong, &flips, &angles, &times, &maps}) {
+        for (std::vector<frame_series>* const each :
+             {&wrong, &flips, &angles, &times, &shadow_map_times, &maps}) {
             each->push_back({name, rank, {}});
         }
         const auto per_cent = [](std::optional<double> ratio) {
@@ -220,13 +250,15 @@ std::string path_section(const results& all, const path_pictures& seen) {
             flips.back().values.push_back(per_cent(frame.flip_ratio));
             angles.back().values.emplace_back(glm::degrees(frame.angle));
             times.back().values.emplace_back(frame.frame_ms);
+            shadow_map_times.back().values.emplace_back(frame.shadow_map_ms);
             maps.back().values.emplace_back(frame.maps);
         }
     }
     html += "</tbody></table></div>\n<div class=\"plots\">\n" +
             frame_plot(wrong, "wrong pixels, %") + frame_plot(flips, "pixels that flip, %") +
             frame_plot(angles, "turn of the map, °") + frame_plot(times, "frame time, ms") +
-            frame_plot(maps, "maps drawn") + "</div>\n<div class=\"cards\">\n";
+            frame_plot(shadow_map_times, "shadow maps, ms") + frame_plot(maps, "maps drawn") +
+            "</div>\n<div class=\"cards\">\n";
     for (const auto& [caption, picture] : seen.pictures) {
         html += "<figure>" + image(picture, caption) + "<figcaption>" + escaped(caption) +
                 "</figcaption></figure>\n";
@@ -287,8 +319,13 @@ std::string colour_rules() {
 
 } // namespace
 
+std::string png_image(const png_file& source, const std::string& what) {
+    return image(source, what);
+}
+
 std::string html_of(const results& all, const std::vector<view_pictures>& views,
-                    const std::vector<path_pictures>& paths) {
+                    const std::vector<path_pictures>& paths,
+                    const std::vector<std::string>& figures) {
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -319,6 +356,9 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
     }
     for (const path_pictures& path : paths) {
         html += path_section(all, path);
+    }
+    for (const std::string& figure : figures) {
+        html += figure;
     }
     return html + "</main></body>\n</html>\n";
 }

@@ -25,6 +25,19 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     json["method"] = run.method;
     json["map"] = run.map;
     json["view"] = {view.x, view.y};
+    if (run.bias) {
+        const bias_measures& effect = run.bias_effect;
+        ordered_json bias;
+        bias["kind"] = *run.bias;
+        bias["value"] = effect.value;
+        bias["acne_ratio"] = number_or_null(effect.acne_ratio);
+        bias["leak_ratio"] = number_or_null(effect.leak_ratio);
+        bias["displacement_texels"] = number_or_null(effect.displacement_texels);
+        json["bias"] = bias;
+    }
+    if (run.filter != "none") {
+        json["filter"] = run.filter;
+    }
     json["samples"] = c.samples;
     json["wrong_pixel_ratio"] = number_or_null(c.ratio(c.false_shadow + c.false_light));
     json["false_shadow_ratio"] = number_or_null(c.ratio(c.false_shadow));
@@ -73,6 +86,7 @@ ordered_json json_of_path(const path_record& path, glm::ivec2 view) {
     mean["flip_ratio"] = number_or_null(means.flip_ratio);
     mean["largest_turn_degrees"] = glm::degrees(means.largest_turn);
     mean["frame_ms"] = means.frame_ms;
+    mean["shadow_map_ms"] = means.shadow_map_ms;
     mean["maps"] = means.maps;
     json["mean"] = mean;
     json["frames"] = ordered_json::array();
@@ -82,10 +96,37 @@ ordered_json json_of_path(const path_record& path, glm::ivec2 view) {
         entry["flip_ratio"] = number_or_null(frame.flip_ratio);
         entry["angle_degrees"] = glm::degrees(frame.angle);
         entry["frame_ms"] = frame.frame_ms;
+        entry["shadow_map_ms"] = frame.shadow_map_ms;
         entry["maps"] = frame.maps;
         json["frames"].push_back(entry);
     }
     return json;
+}
+
+ordered_json json_of_figure(const figure_record& figure) {
+    ordered_json json;
+    json["figure"] = figure.name;
+    json["scene"] = figure.scene;
+    json["camera"] = figure.camera;
+    json["light"] = figure.light;
+    json["cells"] = ordered_json::array();
+    for (const figure_record::cell& cell : figure.cells) {
+        ordered_json entry;
+        entry["row"] = cell.row;
+        entry["column"] = cell.column;
+        entry["run"] = cell.run;
+        if (cell.mean_light_error) {
+            entry["filtered_acne_ratio"] = number_or_null(cell.filtered_acne);
+            entry["mean_light_error"] = number_or_null(cell.mean_light_error);
+        }
+        json["cells"].push_back(entry);
+    }
+    return json;
+}
+
+bool any_bias(const results& all) {
+    return std::any_of(all.runs.begin(), all.runs.end(),
+                       [](const run_record& run) { return run.bias.has_value(); });
 }
 
 std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t texts) {
@@ -123,6 +164,12 @@ std::string json_of(const results& all) {
     for (const path_record& path : all.paths) {
         json["paths"].push_back(json_of_path(path, all.view));
     }
+    if (!all.figures.empty()) {
+        json["figures"] = ordered_json::array();
+        for (const figure_record& figure : all.figures) {
+            json["figures"].push_back(json_of_figure(figure));
+        }
+    }
     json["not_applicable"] = ordered_json::array();
     for (const not_applicable& each : all.left_out) {
         ordered_json entry;
@@ -143,6 +190,15 @@ std::string percent_text(std::optional<double> ratio) {
     char buffer[32];
     const double percent = 100.0 * *ratio;
     std::snprintf(buffer, sizeof buffer, percent >= 10.0 ? "%.1f" : "%.2f", percent);
+    return buffer;
+}
+
+std::string texels_text(std::optional<double> texels) {
+    if (!texels) {
+        return "-";
+    }
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.*f", *texels >= 10.0 ? 1 : 3, *texels);
     return buffer;
 }
 
@@ -178,10 +234,22 @@ std::string table_of(const results& all) {
                         percent_text(c.ratio(c.false_shadow)), percent_text(c.ratio(c.false_light)),
                         ms_text(run.result.frame_ms_median), bytes_text(run.result.bytes)});
     }
-    std::string text = all.runs.empty() ? std::string() : aligned(rows, 4);
+    if (any_bias(all)) {
+        const auto insert = [](std::vector<std::string>& row, std::vector<std::string> cells) {
+            row.insert(row.begin() + 4, cells.begin(), cells.end());
+        };
+        insert(rows.front(), {"bias", "acne %", "leak %", "texels"});
+        for (std::size_t i = 0; i < all.runs.size(); ++i) {
+            const bias_measures& effect = all.runs[i].bias_effect;
+            insert(rows[i + 1],
+                   {all.runs[i].bias.value_or("-"), percent_text(effect.acne_ratio),
+                    percent_text(effect.leak_ratio), texels_text(effect.displacement_texels)});
+        }
+    }
+    std::string text = all.runs.empty() ? std::string() : aligned(rows, any_bias(all) ? 5 : 4);
     if (!all.paths.empty()) {
         rows = {{"scene", "camera", "light", "path", "method", "map", "wrong %", "flips %",
-                 "largest turn", "frame ms", "maps"}};
+                 "largest turn", "frame ms", "shadow map ms", "maps"}};
         for (const path_record& path : all.paths) {
             const path_means means = means_of(path);
             const auto number = [](double value, const char* how) {
@@ -193,7 +261,8 @@ std::string table_of(const results& all) {
                             std::to_string(path.map), percent_text(means.wrong_ratio),
                             means.flip_ratio ? number(100.0 * *means.flip_ratio, "%.3f") : "-",
                             number(glm::degrees(means.largest_turn), "%.2f"),
-                            ms_text(means.frame_ms), number(means.maps, "%.1f")});
+                            ms_text(means.frame_ms), ms_text(means.shadow_map_ms),
+                            number(means.maps, "%.1f")});
         }
         text += aligned(rows, 5);
     }

@@ -7,6 +7,8 @@
 
 #include <glm/glm.hpp>
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,26 @@ struct run_record {
     int map = 0; ///< texels along a side; 0 for a method without a map
     comparison against_truth;
     method_result result;
+    std::optional<std::string> bias = std::nullopt; ///< as it was asked for; none: not measured
+    bias_measures bias_effect = {};
+    std::string filter = "none"; ///< of the shadows in the pictures
+};
+
+/// Runs in rows and columns.
+struct figure_record {
+    std::string name;
+    std::string scene;
+    std::string camera;
+    std::string light;
+    /// One cell, by its place and its run.
+    struct cell {
+        std::string row;
+        std::string column;
+        std::size_t run;                        ///< index into results::runs
+        std::optional<double> filtered_acne;    ///< acne that is left after the filter
+        std::optional<double> mean_light_error; ///< of the filtered light, against the ray tracer
+    };
+    std::vector<cell> cells;
 };
 
 /// A method that was asked for and cannot do the light.
@@ -40,6 +62,7 @@ struct results {
     std::vector<run_record> runs;
     std::vector<path_record> paths;
     std::vector<not_applicable> left_out;
+    std::vector<figure_record> figures;
 };
 
 /// The text of results.json, schema 1.
@@ -50,6 +73,9 @@ std::string table_of(const results& all);
 
 /// A share as per cent, "-" when there is none.
 std::string percent_text(std::optional<double> ratio);
+
+/// A mean displacement, "-" when there is none.
+std::string texels_text(std::optional<double> texels);
 
 /// "4.0 MiB" and the like.
 std::string bytes_text(std::size_t bytes);

@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
@@ -51,6 +52,7 @@ struct scene {
     warpshadow::box3<double> box;          ///< of the positions
     std::vector<std::uint8_t> material_of; ///< per triangle, index into `materials`
     std::vector<material> materials;
+    std::vector<std::size_t> parts; ///< first triangles of the objects it was built of, increasing
 };
 
 /// A built-in scene as --list-scenes shows it.

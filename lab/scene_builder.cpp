@@ -96,7 +96,19 @@ std::uint8_t scene_builder::add_material(std::uint32_t srgb, float variation) {
     return static_cast<std::uint8_t>(scene_.materials.size() - 1);
 }
 
+void scene_builder::use(std::uint8_t material) {
+    begin_part();
+    material_ = material;
+}
+
+void scene_builder::begin_part() {
+    if (!in_tree_ && (scene_.parts.empty() || scene_.parts.back() < scene_.triangles.size())) {
+        scene_.parts.push_back(scene_.triangles.size());
+    }
+}
+
 void scene_builder::place(glm::vec3 origin, float yaw) {
+    begin_part();
     origin_ = origin;
     cosine_ = std::cos(yaw);
     sine_ = std::sin(yaw);
@@ -290,14 +302,20 @@ void scene_builder::branch(glm::vec3 from, glm::vec3 direction, float length, fl
 
 void scene_builder::broad_tree(glm::vec3 foot, const tree& shape) {
     const float length = 0.36f * shape.height;
+    begin_part();
+    in_tree_ = true;
     branch(
         foot - glm::vec3(0.0f, 0.3f, 0.0f),
         glm::normalize(glm::vec3(random.range(-0.06f, 0.06f), 1.0f, random.range(-0.06f, 0.06f))),
         length, 0.034f * shape.height, 0, shape);
+    in_tree_ = false;
+    begin_part();
 }
 
 void scene_builder::conifer(glm::vec3 foot, float height, int tiers, int points, std::uint8_t bark,
                             std::uint8_t needles) {
+    begin_part();
+    in_tree_ = true;
     use(bark);
     tube(foot - glm::vec3(0.0f, 0.3f, 0.0f), foot + glm::vec3(0.0f, 0.95f * height, 0.0f),
          0.022f * height, 0.004f * height, 6, false);
@@ -321,6 +339,8 @@ void scene_builder::conifer(glm::vec3 foot, float height, int tiers, int points,
             triangle(top, point, rim(a + 0.42f * step, 0.5f * r, 0.0f));
         }
     }
+    in_tree_ = false;
+    begin_part();
 }
 
 void scene_builder::add_camera(glm::dvec3 eye, glm::dvec3 target, double fov_y_degrees) {

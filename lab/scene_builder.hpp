@@ -35,7 +35,7 @@ class scene_builder {
 
     /// Colour as in a picture editor, 0xRRGGBB.
     std::uint8_t add_material(std::uint32_t srgb, float variation = 0.0f);
-    void use(std::uint8_t material) { material_ = material; }
+    void use(std::uint8_t material);
     /// Origin and turn about the y axis (radians) of what is added next.
     void place(glm::vec3 origin, float yaw = 0.0f);
 
@@ -80,9 +80,12 @@ class scene_builder {
     void branch(glm::vec3 from, glm::vec3 direction, float length, float radius, int level,
                 const tree& shape);
     [[nodiscard]] glm::vec3 placed(glm::vec3 p) const;
+    /// What is added next is another object, to be culled by itself.
+    void begin_part();
 
     scene scene_;
     std::uint8_t material_ = 0;
+    bool in_tree_ = false; ///< bark and leaves are one object
     glm::vec3 origin_{0.0f};
     float cosine_ = 1.0f;
     float sine_ = 0.0f;

@@ -35,6 +35,9 @@ void append_node(scene& world, const aiScene& file, const aiNode& node, const ai
         if (base + mesh.mNumVertices > 0xffffffffu) {
             throw bad_input("scene '" + world.name + "' has more than 2^32 vertices");
         }
+        if (!world.triangles.empty()) {
+            world.parts.push_back(world.triangles.size());
+        }
         for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
             const aiVector3D p = to_world * mesh.mVertices[v];
             world.positions.emplace_back(p.x, p.y, p.z);

@@ -15,8 +15,11 @@ from pathlib import Path
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
 METHODS = ["sm", "stable", "min-sm", "dv", "lispsm", "fitted", "fitted-2", "min-sm-notw",
            "lispsm-notw", "fitted-notw", "notw", "notw-nodv"]
-NOT_FOR_POINTS = ["sm", "stable", "fitted-2", "notw-nodv"]
-SMALL = ["--view", "96x64", "--repeat", "2"]
+FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-cull-gs", "cube6-efc-gs", "dpsm",
+                    "dpsm-cull", "dpsm-pc", "cube-notw"]
+NOT_FOR_POINTS = ["sm", "stable", "fitted-2", "notw", "notw-nodv"]
+REPEAT = 2
+SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
 RUN_KEYS = {
     "scene", "camera", "light", "method", "map", "view", "samples", "wrong_pixel_ratio",
     "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
@@ -62,7 +65,11 @@ def check_files(folder):
         png_size(base64.b64decode(source.split(",", 1)[1], validate=True))
     assert "http:" not in html and "https:" not in html, "the page must need nothing but itself"
     results = json.loads((folder / "results.json").read_text())
-    plots_of_a_section = 1 if results["runs"] else 5
+    if "figures" in results:
+        assert html.count('<section class="figure">') == html.count("</section>") > 0
+        assert html.count("<svg") == 0
+        return
+    plots_of_a_section = 1 if results["runs"] else 6
     assert html.count("<section>") == html.count("</section>") > 0
     assert html.count("<svg") == plots_of_a_section * html.count("<section>")
     assert 'name="viewport"' in html and "prefers-color-scheme: dark" in html
@@ -75,7 +82,7 @@ def png_size(content):
 
 
 def check_results(results):
-    assert list(results) == [
+    assert [key for key in results if key != "figures"] == [
         "schema", "device", "timing", "runs", "paths", "not_applicable"]
     assert results["schema"] == 1
     assert results["device"]["renderer"] and results["device"]["version"]
@@ -84,7 +91,7 @@ def check_results(results):
     assert results["timing"] == ("glfinish" if software else "timer_query")
     assert bool(results["runs"]) != bool(results["paths"]), "one or the other"
     for entry in results["runs"]:
-        assert set(entry) == RUN_KEYS, set(entry) ^ RUN_KEYS
+        assert set(entry) - {"bias", "filter"} == RUN_KEYS, set(entry) ^ RUN_KEYS
         assert entry["view"] == [96, 64]
         assert 0 <= entry["samples"] <= 96 * 64
         wrong, shadow, light = (
@@ -98,7 +105,7 @@ def check_results(results):
         grazing = entry["grazing"]
         assert (grazing["wrong_pixel_ratio"] is None) == (grazing["samples"] == 0)
         times = entry["frame_ms"]
-        assert 0 < times["min"] <= times["median"] <= times["max"] and times["n"] == 2
+        assert 0 < times["min"] <= times["median"] <= times["max"] and times["n"] == REPEAT
         assert entry["pass_ms"] and all(t >= 0 for t in entry["pass_ms"].values())
         assert entry["bytes"] > 0 and entry["triangles"] > 0
         if entry["method"] == "raytraced":
@@ -122,7 +129,7 @@ def check_every_method():
     first = report("every", "--scene", "leaves", "--methods", "all", "--map", "64,128")
     assert methods_of(first) == (
         [(m, 64) for m in METHODS] + [("raytraced", 0)] + [(m, 128) for m in METHODS])
-    assert first["not_applicable"] == []
+    assert [e["method"] for e in first["not_applicable"]] == FOR_POINTS_ALONE
     by_name = {(r["method"], r["map"]): r["wrong_pixel_ratio"] for r in first["runs"]}
     assert by_name["sm", 128] < by_name["sm", 64], "a larger map is wrong less often"
     assert by_name["dv", 64] < 0.5, "better than a coin"
@@ -136,19 +143,27 @@ def check_every_method():
 def check_spot_and_point():
     camera = "-1,1.5,1,0.5,0.6,-0.5,60"
     spot = report("spot", "--scene", "interior", "--camera", camera, "--light",
-                  "spot:0.2,1.97,-0.1,0.2,0,-0.1,120", "--map", "64")
+                  "spot:0.2,1.97,-0.1,0.2,0,-0.1,120", "--map", "64", "--methods",
+                  "sm,min-sm,dv,lispsm,fitted,fitted-2,notw")
     assert all(r["camera"] == camera for r in spot["runs"])
     assert {r["samples"] for r in spot["runs"]} == {spot["runs"][0]["samples"]}
     assert spot["runs"][0]["samples"] > 0
 
+    # the tables of six faces take long: one method of them stands for all
+    seen = ["min-sm", "dv", "lispsm", "fitted"] + FOR_POINTS_ALONE
     point = report("point", "--scene", "interior", "--camera", camera, "--light",
-                   "point:0.2,1.97,-0.1", "--map", "64")
-    seen = [m for m in METHODS if m not in NOT_FOR_POINTS]
+                   "point:0.2,1.97,-0.1", "--map", "64", "--methods",
+                   ",".join(NOT_FOR_POINTS + seen + ["raytraced"]))
     assert methods_of(point) == [(m, 64) for m in seen] + [("raytraced", 0)]
     assert [(e["method"], e["light"]) for e in point["not_applicable"]] == (
         [(m, "point:0.2,1.97,-0.1") for m in NOT_FOR_POINTS])
     assert all(e["reason"] and e["scene"] == "interior" for e in point["not_applicable"])
     by_name = {r["method"]: r for r in point["runs"]}
+    # culling leaves out what no pixel asks for
+    for plain, culled in (("cube6", "cube6-cull"), ("cube6", "cube6-efc"), ("dpsm", "dpsm-cull"),
+                          ("cube6", "cube6-cull-gs"), ("cube6", "cube6-efc-gs"),
+                          ("dpsm", "dpsm-pc")):
+        assert (by_name[plain]["wrong_pixel_ratio"] == by_name[culled]["wrong_pixel_ratio"]), culled
     # the lamp hangs in front of the camera: all six faces may be needed
     assert by_name["dv"]["maps"] == 6 and by_name["dv"]["bytes"] >= 6 * 4 * 64 * 64
     for m in seen:
@@ -194,6 +209,96 @@ def check_paths():
     keys.unlink()
 
 
+def check_biases():
+    arguments = ["--scene", "leaves", "--methods", "sm,lispsm,fitted,notw,raytraced", "--map", "64"]
+    plain = report("plain", *arguments)
+    assert not any("bias" in r or "filter" in r for r in plain["runs"]), "not asked for"
+    kinds = ["plane", "none", "constant", "slope", "footprint", "linear", "back-face",
+             "footprint+back-face"]
+    compared = report("biases", *arguments, "--bias", ",".join(kinds))
+    by_name = {(r["method"], r["bias"]["kind"]): r for r in compared["runs"] if r["map"] != 0}
+    with_tables = [k for k in kinds if "linear" not in k and "back-face" not in k]
+    assert list(by_name) == [
+        (m, k) for m in ("sm", "lispsm", "fitted", "notw")
+        for k in (with_tables if m == "notw" else kinds)]
+    assert sorted(e["method"] for e in compared["not_applicable"]) == ["notw"] * 3
+    for method in ("sm", "lispsm", "fitted", "notw"):
+        of_bias = {k: by_name[method, k]["bias"] for k in kinds if (method, k) in by_name}
+        for bias in of_bias.values():
+            assert 0 <= bias["acne_ratio"] <= 1 and 0 <= bias["leak_ratio"] <= 1
+            assert bias["displacement_texels"] >= 0
+        # the exact test is the one that runs when nothing is said
+        known = next(r for r in plain["runs"] if r["method"] == method)
+        assert by_name[method, "plane"]["wrong_pixel_ratio"] == known["wrong_pixel_ratio"]
+        assert of_bias["plane"]["acne_ratio"] == of_bias["plane"]["leak_ratio"] == 0
+        assert of_bias["none"]["acne_ratio"] > 0.1 and of_bias["none"]["displacement_texels"] == 0
+        assert of_bias["constant"]["acne_ratio"] == of_bias["footprint"]["acne_ratio"] == 0
+        # the constant is what the worst pixel needs, the footprint what each does
+        assert 0 < of_bias["footprint"]["displacement_texels"]
+        assert of_bias["footprint"]["displacement_texels"] < of_bias["slope"]["displacement_texels"]
+    # the constant is the smallest: a little less, and there is acne
+    value = by_name["lispsm", "constant"]["bias"]["value"]
+    less = report("less", "--scene", "leaves", "--methods", "lispsm", "--map", "64", "--bias",
+                  f"constant:{0.999 * value:.9f},constant:{1.001 * value:.9f}")
+    assert [r["bias"]["acne_ratio"] > 0 for r in less["runs"]] == [True, False]
+    # a filter changes pictures and nothing that is counted
+    for kind in ("pcf", "blur"):
+        filtered = report(kind, *arguments, "--filter", kind)
+        assert [r.get("filter") for r in filtered["runs"]] == [kind] * 4 + [None]
+        for soft, hard in zip(facts(filtered), facts(plain)):
+            soft.pop("filter", None)
+            assert soft == hard
+        name = "leaves-c0-l0-m64-sm.png"
+        pictures = [(scratch / folder / name).read_bytes() for folder in (kind, "plain")]
+        assert pictures[0] != pictures[1]
+
+
+def check_figures():
+    global REPEAT
+    REPEAT = 1
+    for figure, columns in (("figure6", ["none", "constant", "slope", "footprint"]),
+                            ("figure8", ["0×", "1×", "2×", "4×", "8×", "16×"])):
+        arguments = ["--preset", figure, "--scene", "leaves", "--map", "64", "--repeat", "1"]
+        results = figure_report(figure, *arguments)
+        (entry,) = results["figures"]
+        assert [entry[k] for k in ("figure", "scene", "camera", "light")] == (
+            [figure, "leaves", "0", "0"])
+        cells = entry["cells"]
+        assert [c["run"] for c in cells] == list(range(len(results["runs"])))
+        rows = list(dict.fromkeys(c["row"] for c in cells))
+        assert [(c["row"], c["column"]) for c in cells] == [(r, c) for r in rows for c in columns]
+        html = (scratch / figure / "report.html").read_text()
+        assert html.count("displacement&nbsp;") == len(cells) == html.count("acne&nbsp;") - (
+            1 if "acne&nbsp;%</th>" in html else 0)
+        if figure == "figure6":
+            of_bias = {(c["row"], c["column"]): results["runs"][c["run"]]["bias"] for c in cells}
+            for row in rows:
+                assert of_bias[row, "none"]["acne_ratio"] > 0
+                assert of_bias[row, "constant"]["acne_ratio"] == 0
+                assert of_bias[row, "footprint"]["acne_ratio"] == 0
+        else:
+            by_place = {(c["row"], c["column"]): c for c in cells}
+            for row in rows:
+                assert by_place[row, "0×"]["mean_light_error"] < (
+                    by_place[row, "16×"]["mean_light_error"]), "a blur costs detail"
+            assert by_place["sm, blur less with depth", "16×"]["mean_light_error"] < (
+                by_place["sm, blur everywhere", "16×"]["mean_light_error"])
+        kept = {p.name: p.read_bytes() for p in (scratch / figure).glob("*.png")}
+        again = figure_report(figure, *arguments)
+        assert facts(again) == facts(results) and again["figures"] == results["figures"]
+        assert kept == {p.name: p.read_bytes() for p in (scratch / figure).glob("*.png")}
+    REPEAT = 2
+
+
+def figure_report(folder, *arguments):
+    """As report, which gives --repeat and hence may not be given it twice."""
+    global SMALL
+    kept, SMALL = SMALL, SMALL[:2]
+    results = report(folder, *arguments)
+    SMALL = kept
+    return results
+
+
 def check_files_as_scenes():
     # seen from where the light is, the raised square hides its own shadow
     both = report("gltf", "--scene", str(data / "two_quads.gltf"), "--camera",
@@ -236,7 +341,7 @@ def check_help():
     done = run("--help")
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
-                   "--view", "--repeat", "--path", "--frames", "--seed", "--out", "Examples:"):
+                   "--view", "--repeat", "--bias", "--filter", "--preset", "--path", "--frames", "--seed", "--out", "Examples:"):
         assert option in done.stdout, option
     listed = run("--list-scenes")
     assert listed.returncode == 0 and listed.stderr == ""
@@ -253,6 +358,8 @@ check_folders()
 check_every_method()
 check_spot_and_point()
 check_paths()
+check_biases()
+check_figures()
 check_files_as_scenes()
 check_views()
 shutil.rmtree(scratch)

@@ -108,9 +108,9 @@ TEST_CASE("flips are counted on surfaces that both frames see") {
 
 TEST_CASE("means along a path leave out frames without a value") {
     lab::path_record record;
-    record.frames = {{std::nullopt, std::nullopt, 1.5, 3.0, 6},
-                     {0.2, 0.5, -1.5, 1.0, 2},
-                     {0.4, 0.1, -1.4, 2.0, 1}};
+    record.frames = {{std::nullopt, std::nullopt, 1.5, 3.0, 1.0, 6},
+                     {0.2, 0.5, -1.5, 1.0, 1.0, 2},
+                     {0.4, 0.1, -1.4, 2.0, 1.0, 1}};
     const lab::path_means means = lab::means_of(record);
     CHECK(means.wrong_ratio.value() == Approx(0.3));
     CHECK(means.flip_ratio.value() == Approx(0.3));
