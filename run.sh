@@ -18,6 +18,7 @@ usage: ./run.sh [--no-install] [-j N] COMMAND
   bench ...  build the benchmarks and run all, or the named one with the arguments that follow
   docs       build the reference in build/docs
   first-light  measure again what the first block of README.md shows, and write it
+  figures    measure again what docs/bias.md shows of Scherzer's figures, and write it
   help       this text
 
   --no-install   never install a Debian package; say which are missing instead
@@ -247,13 +248,22 @@ command_docs() {
 
 command_first-light() {
     local folder=$root/docs/first-light
-    lab --out "$root/build/first-light"
+    lab --methods sm,dv,fitted,notw,raytraced --out "$root/build/first-light"
     cp "$root/build/first-light/results.json" "$folder/results.json"
     local method
     for method in sm notw; do
         cp "$root/build/first-light/outdoor-c0-l0-m512-$method.png" "$folder/outdoor-$method.png"
     done
     python3 "$folder/write_readme.py"
+}
+
+command_figures() {
+    local folder=$root/docs/bias figure
+    for figure in figure6 figure8; do
+        lab --preset "$figure" --out "$root/build/$figure"
+        cp "$root/build/$figure/results.json" "$folder/$figure.json"
+    done
+    python3 "$folder/write_page.py"
 }
 
 command_help() {
@@ -280,7 +290,7 @@ while (($#)); do
         arguments=("$@")
         break
         ;;
-    demo | test | nightly | docs | first-light | help) command=$1 ;;
+    demo | test | nightly | docs | first-light | figures | help) command=$1 ;;
     *) die "unknown argument $1 (./run.sh help)" ;;
     esac
     shift

@@ -197,6 +197,10 @@ void check(const char* where) {
     throw error("OpenGL: " + std::string(name) + " in " + where);
 }
 
+void wait_for_writes() {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
 buffer::buffer(std::size_t bytes, const void* data, GLenum usage)
     : handle_(generate(glGenBuffers)), bytes_(bytes) {
     glBindBuffer(GL_COPY_WRITE_BUFFER, id());

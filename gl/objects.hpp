@@ -50,6 +50,9 @@ void delete_query(GLuint id);
 /// Throws gl::error naming `where` when GL has an error pending or memory ran out.
 void check(const char* where);
 
+/// Makes what shaders wrote visible to everything that follows.
+void wait_for_writes();
+
 /// A buffer object of fixed size.
 class buffer {
   public:

@@ -27,11 +27,8 @@ void set_linear(const gl::program& program, const scene& world, const light_map&
     } else {
         lo = std::numeric_limits<double>::infinity();
         hi = -lo;
-        for (int i = 0; i < 8; ++i) {
-            const glm::dvec4 corner((i & 1) != 0 ? world.box.hi.x : world.box.lo.x,
-                                    (i & 2) != 0 ? world.box.hi.y : world.box.lo.y,
-                                    (i & 4) != 0 ? world.box.hi.z : world.box.lo.z, 1.0);
-            const glm::dvec4 clip = map.matrix * corner;
+        for (const glm::dvec3& corner : corners_of(world.box)) {
+            const glm::dvec4 clip = map.matrix * glm::dvec4(corner, 1.0);
             const double depth = ws::linear_depth(clip.z / clip.w, clip.w, map.linear);
             lo = std::min(lo, depth);
             hi = std::max(hi, depth);
@@ -42,10 +39,6 @@ void set_linear(const gl::program& program, const scene& world, const light_map&
     program.set("linear_warp", glm::vec3(map.linear));
     program.set("linear_light", glm::vec4(own_w));
     program.set("linear_range", glm::vec2(glm::dvec2(scale, -lo * scale)));
-}
-
-void wait_for_writes() {
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 /// Median depth of what is seen: the nearer half is blurred in full.
@@ -130,7 +123,7 @@ void bias_passes::dispatch(const gl::program& program, map_resources& maps,
         }
         program.dispatch(gpu_.view().x, gpu_.view().y);
     }
-    wait_for_writes();
+    gl::wait_for_writes();
 }
 
 void bias_passes::test(map_resources& maps, const light_maps& chosen, bool warped,
@@ -184,7 +177,7 @@ std::vector<float> bias_passes::light(map_resources& maps, const light_maps& cho
                 other.bind_image(0, GL_WRITE_ONLY);
                 blur_->set("ws_blur_axis", axis);
                 blur_->dispatch(size.x, size.y);
-                wait_for_writes();
+                gl::wait_for_writes();
                 std::swap(share, other);
             }
         }

@@ -87,12 +87,19 @@ light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
 
 } // namespace
 
+std::array<glm::dvec3, 8> corners_of(const ws::box3<double>& box) {
+    std::array<glm::dvec3, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        corners[i] =
+            glm::dvec3((i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
+                       (i & 4) != 0 ? box.hi.z : box.lo.z);
+    }
+    return corners;
+}
+
 double farthest_along(const ws::box3<double>& box, glm::dvec3 from, glm::dvec3 axis) {
     double farthest = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x,
-                                (i & 2) != 0 ? box.hi.y : box.lo.y,
-                                (i & 4) != 0 ? box.hi.z : box.lo.z);
+    for (const glm::dvec3& corner : corners_of(box)) {
         farthest = std::max(farthest, glm::dot(corner - from, axis));
     }
     return farthest;
@@ -185,10 +192,7 @@ light_maps stable_maps(const scene& world, const ws::frustum<double>& camera,
     ws::frustum<double> turning = camera;
     // a far plane that depends on where the camera looks would change the texels with it
     turning.volume.far_distance = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1) != 0 ? world.box.hi.x : world.box.lo.x,
-                                (i & 2) != 0 ? world.box.hi.y : world.box.lo.y,
-                                (i & 4) != 0 ? world.box.hi.z : world.box.lo.z);
+    for (const glm::dvec3& corner : corners_of(world.box)) {
         turning.volume.far_distance =
             std::max(turning.volume.far_distance, glm::length(corner - camera.eye));
     }

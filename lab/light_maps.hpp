@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -44,6 +45,9 @@ struct light_memory {
     warpshadow::fit_state fit;
     std::vector<warpshadow::projective_state<double>> bends; ///< per map
 };
+
+/// Corners of a box.
+std::array<glm::dvec3, 8> corners_of(const warpshadow::box3<double>& box);
 
 /// Distance from `from` to the farthest corner of a box along an axis of unit length; at least 0.
 double farthest_along(const warpshadow::box3<double>& box, glm::dvec3 from, glm::dvec3 axis);

@@ -267,7 +267,7 @@ void omni_passes::test_hemispheres(const map_resources& maps, const light_view& 
     passes::bind_depth(maps);
     gpu_.mask().bind_image(0, GL_WRITE_ONLY);
     test_hemispheres_.dispatch(gpu_.view().x, gpu_.view().y);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    gl::wait_for_writes();
 }
 
 } // namespace lab

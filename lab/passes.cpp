@@ -68,10 +68,6 @@ void clear_bounds(gl::buffer& bounds) {
     bounds.write(0, sizeof empty, empty.data());
 }
 
-void wait_for_writes() {
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
-}
-
 } // namespace
 
 g_buffer::g_buffer(glm::ivec2 view)
@@ -260,10 +256,10 @@ void passes::crop_to_desired_view(map_resources& maps, std::size_t index) {
     clear_bounds(desired);
     desired.bind_base(GL_SHADER_STORAGE_BUFFER, on_desired_view);
     find_desired_view_.dispatch((view_.x + 3) / 4, (view_.y + 3) / 4);
-    wait_for_writes();
+    gl::wait_for_writes();
     crop_.set("margin", 0.5f / static_cast<float>(std::max(maps.size - 1, 1)));
     crop_.dispatch(1);
-    wait_for_writes();
+    gl::wait_for_writes();
 }
 
 std::optional<glm::dvec2> passes::depth_range(const ws::frustum<double>& camera) {
@@ -275,7 +271,7 @@ std::optional<glm::dvec2> passes::depth_range(const ws::frustum<double>& camera)
         "share_of_far",
         glm::vec4(glm::dvec4(forward, -glm::dot(forward, camera.eye)) / far_distance));
     find_depth_range_.dispatch((view_.x + 3) / 4, (view_.y + 3) / 4);
-    wait_for_writes();
+    gl::wait_for_writes();
     const std::vector<float> found = depths_.read<float>();
     if (!(found[0] <= found[2])) {
         return std::nullopt;
@@ -291,7 +287,7 @@ std::vector<std::uint32_t> passes::histogram(std::size_t index, int size) {
     histogram_.clear(glm::uvec4(0u));
     histogram_.bind_image(0, GL_READ_WRITE);
     splat_rows_.dispatch(view_.x, view_.y);
-    wait_for_writes();
+    gl::wait_for_writes();
     return histogram_.read<std::uint32_t>();
 }
 
@@ -315,7 +311,7 @@ void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bo
         warp.counts.clear(glm::uvec4(0u));
         warp.counts.bind_image(0, GL_READ_WRITE);
         splat.dispatch(view_.x, view_.y);
-        wait_for_writes();
+        gl::wait_for_writes();
     });
     if (keep_counts) {
         (columns ? warp.second_counts : warp.first_counts) = warp.counts.read<std::uint32_t>();
@@ -324,7 +320,7 @@ void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bo
         const int size = warp.counts.width();
         warp.counts.bind_image(0, GL_READ_WRITE);
         sum_columns_.dispatch(size);
-        wait_for_writes();
+        gl::wait_for_writes();
         table.bind_image(1, GL_WRITE_ONLY);
         const ws::build_options<float> options;
         build_axis_.set("ws_radius", ws::window_radius(options.window, size));
@@ -333,7 +329,7 @@ void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bo
                         std::max(options.floor, 4.0f * ws::smallest_floor<float, float>(size)));
         build_axis_.use();
         glDispatchCompute(static_cast<GLuint>(size), 1, 1);
-        wait_for_writes();
+        gl::wait_for_writes();
     });
 }
 
@@ -347,7 +343,7 @@ void passes::build_tables(map_resources& maps, std::size_t index, bool keep_coun
     timed_pass("unwarp centres", [&] {
         warp.centres.bind_image(0, GL_WRITE_ONLY);
         unwarp_centres_.dispatch(warp.centres.width(), warp.centres.height());
-        wait_for_writes();
+        gl::wait_for_writes();
         warp.centres.bind(unit_centres);
     });
 }
@@ -381,7 +377,7 @@ void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count)
         const int triangles = static_cast<int>(world_.triangles.size());
         set_up_triangles_.set("triangle_count", triangles);
         set_up_triangles_.dispatch(triangles);
-        wait_for_writes();
+        gl::wait_for_writes();
         // three halvings, one of each edge, make a triangle half as large; no edge is longer
         // than the map's diagonal at first
         const int rounds =
@@ -396,7 +392,7 @@ void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count)
             cut_triangles_.set("list", static_cast<int>(source));
             cut_triangles_.set("last_round", static_cast<int>(round + 1 == rounds));
             cut_triangles_.dispatch(64 * 64);
-            wait_for_writes();
+            gl::wait_for_writes();
         }
     });
     timed_pass("shadow map", [&] {
@@ -407,7 +403,7 @@ void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count)
         nothing_.bind();
         counters_.bind(GL_DRAW_INDIRECT_BUFFER);
         glDrawArraysIndirect(GL_TRIANGLES, nullptr);
-        wait_for_writes();
+        gl::wait_for_writes();
     });
     if (count) {
         counted_.push_back(counters_.read<triangle_counts>().front());
@@ -432,7 +428,7 @@ void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool wa
         bind_tables(maps, i);
         test_warped_.dispatch(view_.x, view_.y);
     }
-    wait_for_writes();
+    gl::wait_for_writes();
 }
 
 std::vector<float> passes::draw_depths(const glm::dmat4& matrix, int size) {

@@ -347,9 +347,8 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
             "shadow on the same place of a surface that both frames see, though nothing but the "
             "camera moved.</p>\n";
     }
-    for (const not_applicable& each : all.left_out) {
-        html += "<p>" + escaped(each.method) + " does not apply to " + escaped(each.scene) +
-                ", light " + escaped(each.light) + ": " + escaped(each.reason) + ".</p>\n";
+    for (const std::string& line : left_out_lines(all)) {
+        html += "<p>Not applicable: " + escaped(line) + ".</p>\n";
     }
     for (const view_pictures& view : views) {
         html += view_section(all, view);

@@ -183,6 +183,35 @@ std::string json_of(const results& all) {
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+std::vector<std::string> left_out_lines(const results& all) {
+    struct group {
+        std::string rest; // what follows the methods
+        std::vector<std::string> methods;
+    };
+    std::vector<group> groups;
+    for (const not_applicable& each : all.left_out) {
+        const std::string rest = " on " + each.scene + ", light " + each.light + ": " + each.reason;
+        auto same = std::find_if(groups.begin(), groups.end(),
+                                 [&](const group& one) { return one.rest == rest; });
+        if (same == groups.end()) {
+            same = groups.insert(groups.end(), {rest, {}});
+        }
+        if (std::find(same->methods.begin(), same->methods.end(), each.method) ==
+            same->methods.end()) {
+            same->methods.push_back(each.method);
+        }
+    }
+    std::vector<std::string> lines;
+    for (const group& one : groups) {
+        std::string names;
+        for (const std::string& method : one.methods) {
+            names += (names.empty() ? "" : ", ") + method;
+        }
+        lines.push_back(names + one.rest);
+    }
+    return lines;
+}
+
 std::string percent_text(std::optional<double> ratio) {
     if (!ratio) {
         return "-";
@@ -266,9 +295,8 @@ std::string table_of(const results& all) {
         }
         text += aligned(rows, 5);
     }
-    for (const not_applicable& each : all.left_out) {
-        text += "not applicable: " + each.method + " on " + each.scene + ", light " + each.light +
-                ": " + each.reason + "\n";
+    for (const std::string& line : left_out_lines(all)) {
+        text += "not applicable: " + line + "\n";
     }
     return text;
 }

@@ -71,6 +71,9 @@ std::string json_of(const results& all);
 /// A table for a terminal, one line per run, or per method along a path.
 std::string table_of(const results& all);
 
+/// What was left out and why, one line for all methods with the same reason.
+std::vector<std::string> left_out_lines(const results& all);
+
 /// A share as per cent, "-" when there is none.
 std::string percent_text(std::optional<double> ratio);
 

@@ -2,7 +2,7 @@
 //
 // The table is an r32f texture of ws_blocks x (2 ws_blocks - 1) texels, ws_blocks a power of two, 64
 // by default. Dispatch once per level, 0 to log2(ws_blocks), (ws_blocks >> level) invocations along
-// x and y, with a barrier for texture fetches after each. Include warpshadow/tessellation.glsl
+// x and y, with a barrier for texture fetches after each. Include warpshadow/bend_table.glsl
 // before.
 #ifndef WS_BINDING_BENDS_IMAGE
 #define WS_BINDING_BENDS_IMAGE 0

@@ -106,6 +106,26 @@ template <typename T> glm::vec<2, T> crop(const map_rect<T>& rect, glm::vec<2, T
     return (p - rect.lo) / (rect.hi - rect.lo);
 }
 
+/// Light matrix whose map is the given rectangle of the original map, with nothing guarded.
+///
+/// The map is NDC · ½ + ½; depth is unchanged. For shaders, which crop what they have just found;
+/// see `crop_matrix` for everything else.
+/// @param light clip-from-world matrix of the light
+/// @param lo    least u and v of the rectangle
+/// @param hi    largest u and v, above lo
+template <typename T>
+glm::mat<4, 4, T> cropped(const glm::mat<4, 4, T>& light, glm::vec<2, T> lo, glm::vec<2, T> hi) {
+    // NDC' = NDC / extent + (1 − 2 lo) / extent − 1, from map' = (map − lo) / extent
+    glm::vec<2, T> scale = T(1) / (hi - lo);
+    glm::vec<2, T> shift = (T(1) - T(2) * lo) * scale - T(1);
+    glm::mat<4, 4, T> result = light;
+    for (int column = 0; column < 4; ++column) {
+        result[column].x = scale.x * light[column].x + shift.x * light[column].w;
+        result[column].y = scale.y * light[column].y + shift.y * light[column].w;
+    }
+    return result;
+}
+
 /// A cropped light matrix.
 template <typename T> struct crop_result {
     glm::mat<4, 4, T> matrix;  ///< crop · light
@@ -127,18 +147,11 @@ crop_result<T> crop_matrix(const glm::mat<4, 4, T>& light, const map_rect<T>& re
         !(lo.x > -largest && lo.x < largest && lo.y > -largest && lo.y < largest)) {
         return {light, status::invalid_input};
     }
-    // NDC' = NDC / extent + (1 − 2 lo) / extent − 1, from map' = (map − lo) / extent
-    const glm::dvec2 scale = 1.0 / extent;
-    const glm::dvec2 shift = (glm::dvec2(1.0) - 2.0 * lo) * scale - 1.0;
-    glm::dmat4 cropped(light);
-    for (int column = 0; column < 4; ++column) {
-        cropped[column].x = scale.x * cropped[column].x + shift.x * cropped[column].w;
-        cropped[column].y = scale.y * cropped[column].y + shift.y * cropped[column].w;
-    }
-    if (!detail::fits<T>(cropped)) {
+    const glm::dmat4 result = cropped(glm::dmat4(light), lo, glm::dvec2(rect.hi));
+    if (!detail::fits<T>(result)) {
         return {light, status::invalid_input};
     }
-    return {glm::mat<4, 4, T>(cropped), status::ok};
+    return {glm::mat<4, 4, T>(result), status::ok};
 }
 
 } // namespace warpshadow

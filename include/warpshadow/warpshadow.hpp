@@ -1,6 +1,7 @@
 // Everything but glsl.hpp, which allocates strings and is wanted by programs that build shaders.
 #pragma once
 
+#include <warpshadow/bend_table.hpp>
 #include <warpshadow/bias.hpp>
 #include <warpshadow/build_options.hpp>
 #include <warpshadow/calipers.hpp>

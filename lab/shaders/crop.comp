@@ -14,12 +14,6 @@ void main()
         ws_widen_side(uintBitsToFloat(desired_lo[0]), uintBitsToFloat(desired_hi[0]), margin, lo.x, hi.x);
         ws_widen_side(uintBitsToFloat(desired_lo[1]), uintBitsToFloat(desired_hi[1]), margin, lo.y, hi.y);
     }
-    vec2 scale = 1.0 / (hi - lo);
-    vec2 shift = (1.0 - 2.0 * lo) * scale - 1.0;
-    mat4 cropped = light_full;
-    for (int column = 0; column < 4; ++column) {
-        cropped[column].xy = scale * cropped[column].xy + shift * cropped[column].w;
-    }
-    light_matrix = cropped;
-    light_normal = transpose(inverse(cropped));
+    light_matrix = ws_cropped(light_full, lo, hi);
+    light_normal = transpose(inverse(light_matrix));
 }

@@ -4,8 +4,7 @@
 // depth, brought to 0..1. WARPED: the map has tables.
 #include "lab/light.glsl"
 #include "lab/view_sample.glsl"
-#include "warpshadow/warp.glsl"
-#include "warpshadow/bias.glsl"
+#include "lab/plane_depth.glsl"
 uniform sampler2DArray shadow_map; // one layer per map
 #ifdef WARPED
 layout(binding = 2) uniform sampler2D warp_rows;
@@ -18,9 +17,6 @@ uniform float bias_radius; // reach of the filter in texels
 #ifdef LINEAR
 #include "lab/linear_depth.glsl"
 #endif
-
-// rounding of position, matrix and depth, about 2^-21 of the map and of the depth range
-const float rounding = 4.8e-7;
 
 struct map_receiver {
     int map;
@@ -47,8 +43,7 @@ float texel_depth(map_receiver r, ivec2 texel)
     return texelFetch(shadow_map, ivec3(texel, r.map), 0).r;
 }
 
-// Depth of the receiver's plane at the centre of a texel, less the rounding: a texel that holds
-// less holds another surface, before that plane.
+// Depth of the receiver's plane at the centre of a texel, less the rounding, as the map holds it.
 float plane_depth(map_receiver r, ivec2 texel)
 {
 #ifdef WARPED
@@ -56,13 +51,12 @@ float plane_depth(map_receiver r, ivec2 texel)
 #else
     vec2 centre = (vec2(texel) + 0.5) / vec2(textureSize(shadow_map, 0).xy);
 #endif
-    float depth = r.p.z + ws_plane_depth_step(r.plane, r.p.xy, centre, 1.0);
-    float slack = rounding * (1.0 + (abs(r.plane.x) + abs(r.plane.y)) / abs(r.plane.z));
+    float depth = plane_depth_at(r.plane, r.p, centre);
 #ifdef LINEAR
     float inverse_w = 1.0 / r.warp_w + dot(r.inverse_w_slope, centre - r.p.xy);
     depth = linear_of(depth * 2.0 - 1.0, 1.0 / inverse_w);
 #endif
-    return depth - slack * r.gain;
+    return depth - plane_rounding(r.plane) * r.gain;
 }
 
 bool is_dark(map_receiver r, ivec2 texel)

@@ -7,8 +7,7 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 #include "lab/light.glsl"
 #include "lab/view_sample.glsl"
-#include "warpshadow/warp.glsl"
-#include "warpshadow/bias.glsl"
+#include "lab/plane_depth.glsl"
 layout(r8ui, binding = 0) uniform writeonly uimage2D shadow_mask;
 uniform sampler2DArray shadow_map; // one layer per map
 #ifdef WARPED
@@ -47,11 +46,7 @@ void main()
 #endif
         // clip space and map space differ by one factor on all axes: the normal is the same
         vec3 plane = ws_map_normal(light_maps[map].normal, vec4(normal, -dot(normal, world.xyz)));
-        // edge-on to the light there is no slope to follow; the sample's own depth serves then
-        float move = ws_plane_depth_step(plane, p.xy, centre, 1.0);
-        // rounding of position, matrix and depth, about 2^-21 of the map and of the depth range
-        float rounding = 4.8e-7 * (1.0 + (abs(plane.x) + abs(plane.y)) / abs(plane.z));
-        float receiver = p.z + move - rounding;
+        float receiver = plane_depth_at(plane, p, centre) - plane_rounding(plane);
         dark = texelFetch(shadow_map, ivec3(texel, map), 0).r < receiver ? 1u : 0u;
     }
     imageStore(shadow_mask, pixel, uvec4(dark));

@@ -168,3 +168,26 @@ TEST_CASE("the minimal maps of the lab hold what the camera sees and a light can
     }
     CHECK(looked_up > 1000);
 }
+
+TEST_CASE("lispsm under a spot light keeps a depth range although casters reach to the light") {
+    // this view once had all depths within 1e-10 of each other, and three of four pixels wrong
+    const lab::scene world = lab::build_scene("leaves", 1);
+    const ws::frustum<double> view = lab::camera_frustum(world, world.cameras.at(1), {16, 12});
+    const lab::light_view& light = world.lights.at(2);
+    REQUIRE(light.light.kind == ws::light_kind::spot);
+    const lab::light_maps maps = lab::lispsm_maps(world, view, light);
+    REQUIRE(maps.maps.size() == 1);
+    const glm::dvec3 axis = glm::normalize(light.light.direction);
+    const double reach = lab::farthest_along(world.box, light.light.position, axis);
+    double lo = 1.0;
+    double hi = -1.0;
+    for (const double share : {0.1, 0.2, 0.4, 0.8}) {
+        const glm::dvec4 clip =
+            maps.maps[0].matrix * glm::dvec4(light.light.position + share * reach * axis, 1.0);
+        lo = std::min(lo, clip.z / clip.w);
+        hi = std::max(hi, clip.z / clip.w);
+    }
+    // depths of a perspective map with near at 2^-10 of far: 2 near / (1 - near) · (1 / 0.1 - 1 /
+    // 0.8) in NDC, or 0.017; a warp's own w takes a share of it
+    CHECK(hi - lo > 0.001);
+}

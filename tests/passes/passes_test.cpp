@@ -2,6 +2,7 @@
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 
+#include <warpshadow/bend_table.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/warp_build.hpp>
 
@@ -216,6 +217,72 @@ TEST_CASE("passes: tables of the device are those of the host") {
                 }
             }
             CHECK(worst <= 8.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));
+        }
+    }
+}
+
+TEST_CASE("passes: the bend table of the device is that of the host") {
+    const gl::headless_context context;
+    const gl::program measure =
+        pass("#define WS_BINDING_BENDS 2\n#include \"warpshadow/warp.glsl\"\n"
+             "#include \"warpshadow/bend_table.glsl\"\n#include \"passes/bend_table.glsl\"\n");
+    for (const int size : {2, 17, 64, 200}) {
+        for (const int blocks : {2, 16, 64}) {
+            CAPTURE(size, blocks);
+            const view samples = make_view({97, 61}, static_cast<unsigned>(size));
+            const auto cells = static_cast<std::size_t>(size);
+            std::vector<std::uint32_t> counts(cells * cells);
+            std::vector<std::uint64_t> scratch(cells);
+            std::vector<float> row_nodes(cells * (cells + 1));
+            std::vector<float> column_nodes(cells * (cells + 1));
+            const ws::warp_result<float> warp =
+                ws::build_warp<float, float>(samples.lit, {.window = 0.12f, .floor = 0.2f},
+                                             {size, counts, scratch, row_nodes, column_nodes});
+            std::vector<float> host(ws::bend_nodes(blocks));
+            ws::table_view<float> bends;
+            REQUIRE(ws::build_bends(warp.rows, warp.columns, blocks, std::span(host), bends) ==
+                    ws::status::ok);
+
+            gl::texture rows(GL_R32F, size + 1, size);
+            gl::texture columns(GL_R32F, size + 1, size);
+            rows.write(row_nodes.data());
+            columns.write(column_nodes.data());
+            gl::texture table(GL_R32F, blocks, ws::bend_rows(blocks));
+            table.clear(glm::vec4(0.0f));
+            rows.bind(0);
+            columns.bind(1);
+            table.bind(2);
+            table.bind_image(0, GL_WRITE_ONLY);
+            int level = 0;
+            for (int across = blocks; across >= 1; across /= 2) {
+                measure.set("ws_level", level++);
+                measure.dispatch(across, across);
+                gl::wait_for_writes();
+            }
+            const std::vector<float> device = table.read<float>();
+            REQUIRE(device.size() == host.size());
+            float worst = 0.0f;
+            float largest = 0.0f;
+            int row = 0;
+            for (int across = blocks; across >= 1; across /= 2) {
+                for (int y = 0; y < across; ++y) {
+                    for (int x = 0; x < across; ++x) {
+                        const auto at = static_cast<std::size_t>((row + y) * blocks + x);
+                        largest = std::max(largest, host[at]);
+                        worst = std::max(worst, std::abs(device[at] - host[at]) /
+                                                    std::max(host[at], 1e-30f));
+                    }
+                }
+                row += across;
+            }
+            // D is a root of sums of products of numbers that are not negative: a compiler that
+            // contracts them changes each of a dozen roundings by one
+            CHECK(worst <= 16.0f * std::numeric_limits<float>::epsilon());
+            CHECK(largest > 0.0f);
+            const auto unit = static_cast<std::size_t>(ws::bend_rows(blocks) - 1) *
+                                  static_cast<std::size_t>(blocks) +
+                              1;
+            CHECK(device[unit] == host[unit]);
         }
     }
 }

@@ -284,9 +284,9 @@ TEST_CASE("no acne under uniform and LiSPSM maps, at no more than is needed") {
             CAPTURE(strength, sum.given, sum.needed);
             CHECK(sum.acne == 0);
             CHECK(sum.given <= 1.001 * sum.needed);
-            // one constant for all of these points must be what the worst of them needs: slopes are
-            // spread evenly up to the steepest, which is twice the mean, and a warp adds its own
-            CHECK(sum.largest_needed * points_seen > (strength > 0.0 ? 2.0 : 1.5) * sum.given);
+            // one constant for all of these points is what the worst of them needs, which is the
+            // mean only if all need the same
+            CHECK(sum.largest_needed * points_seen > sum.given);
         }
     }
 }
@@ -408,8 +408,7 @@ TEST_CASE("no acne under rectilinear and non-orthogonal tables, at no more than 
             CHECK(acne_jacobian <= count / 50);
             CHECK(by_corners <= 1.05 * needed);
             CHECK(by_jacobian <= 1.05 * needed);
-            // slopes are spread as squares, so that the steepest is three times the mean
-            CHECK(best_constant * compared > 3.0 * by_corners);
+            CHECK(best_constant * compared > by_corners); // as above
         }
     }
 }

@@ -2,7 +2,9 @@
 // of axes, bands.
 #include "warp_oracle.hpp"
 
+#include <warpshadow/build_options.hpp>
 #include <warpshadow/rectilinear.hpp>
+#include <warpshadow/second_axis.hpp>
 #include <warpshadow/warp_build.hpp>
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,6 @@
-// Properties of warpshadow/tessellation.hpp: no warped edge and no triangle departs from straight
-// lines by more than the bound, and cutting by the rules keeps what was asked for.
+// Properties of warpshadow/bend_table.hpp and tessellation.hpp: no warped edge and no triangle
+// departs from straight lines by more than the bound, and cutting by the rules keeps what was asked
+// for.
 //
 // The oracle evaluates the stored nodes in long double, piece by piece, and shares no code with the
 // library. `slack` is what the rounding of D may take from the bound: a second difference is one of
@@ -8,6 +9,7 @@
 // of the result, and ends and points of an edge are rounded by u each.
 #include "warp_oracle.hpp"
 
+#include <warpshadow/bend_table.hpp>
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp_build.hpp>
 

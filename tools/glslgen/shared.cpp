@@ -48,6 +48,7 @@ template float warpshadow::ndc_from_eye_depth<float>(float, const volume&, clip_
 // fit
 template bool warpshadow::widen_side<float>(float, float, float, float&, float&);
 template vec2 warpshadow::crop<float>(const warpshadow::map_rect<float>&, vec2);
+template mat4 warpshadow::cropped<float>(const mat4&, vec2, vec2);
 
 // importance
 template int warpshadow::cell_of<float>(float, int);
