@@ -15,8 +15,8 @@ int main() {
     std::vector<std::uint64_t> scratch(size);
     std::vector<float> rows(size * (size + 1)), columns(size * (size + 1));
 
-    const auto warp = warpshadow::build_warp<float, float>(
-        samples, {.window = 0.12f, .floor = 0.2f}, {size, counts, scratch, rows, columns});
+    const auto warp = warpshadow::build_warp<float, float>(samples, {.window = 0.7f, .floor = 0.3f},
+                                                           {size, counts, scratch, rows, columns});
 
     const glm::vec2 texel = warpshadow::warp(warp.rows, warp.columns, p); // where p is in the map
     const glm::mat2 growth = warpshadow::jacobian(warp.rows, warp.columns, p);

@@ -18,8 +18,8 @@ BLOCK = re.compile(r"(<!-- first-light:begin -->\n).*?(<!-- first-light:end -->)
 NAMES = {
     "sm": "plain shadow map",
     "dv": "focused on what is seen (`dv`)",
+    "fitted": "warped by one matrix (`fitted`)",
     "notw": "warped (`notw`)",
-    "notw-nodv": "warped, not focused (`notw-nodv`)",
     "raytraced": "ray traced",
 }
 

@@ -14,10 +14,11 @@ namespace warpshadow {
 template <typename T> struct build_options {
     /// Width of the smoothing window across functions, as a share of their number. Wide windows
     /// make neighbouring functions alike, which the rasteriser's straight edges need; a share of 2
-    /// makes all equal (rectilinear warping).
-    T window = T(0.12);
+    /// makes all equal (rectilinear warping). Narrow ones follow the samples more closely, and lose
+    /// it again where edges are cut no finer than texels.
+    T window = T(0.7);
     /// Density floor ε: no part of the map shrinks below this share of its uniform extent.
-    T floor = T(0.2);
+    T floor = T(0.3);
     /// Weights of the window's rows.
     window_shape shape = window_shape::box;
     /// Half-width of the window in rows, in place of `window`; negative for none.

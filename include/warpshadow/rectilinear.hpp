@@ -29,7 +29,7 @@ template <typename T> struct rectilinear_options {
     /// 2r + 1 cells, a tent as many with weights r + 1 − |d|, r rounded to whole cells.
     T width = T(12);
     /// Density floor ε: no part of the map shrinks below this share of its uniform extent.
-    T floor = T(0.2);
+    T floor = build_options<T>{}.floor; // what suits many functions suits one
 };
 
 /// The method as published: largest importance, σ = 3, and no floor but what the storage needs.
