@@ -1,6 +1,7 @@
 #include "lab/figures.hpp"
 
 #include "lab/bias_run.hpp"
+#include "lab/method_table.hpp"
 #include "lab/plot.hpp"
 #include "lab/report.hpp"
 
@@ -127,9 +128,9 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
         stop_if_asked();
         progress.show(world.name + " " + plan.method + " " + plan.bias);
         const bias_choice bias = parse_bias(plan.bias);
-        std::optional<std::string> reason = gpu.why_not(plan.method, light);
+        std::optional<std::string> reason = why_not(plan.method, light);
         if (!reason) {
-            reason = gpu.why_not(plan.method, light, bias);
+            reason = why_not(plan.method, light, bias);
         }
         progress.advance();
         if (reason) {

@@ -5,6 +5,7 @@
 #include "lab/bias_run.hpp"
 #include "lab/figures.hpp"
 #include "lab/measure.hpp"
+#include "lab/method_table.hpp"
 #include "lab/methods.hpp"
 #include "lab/options.hpp"
 #include "lab/path_runner.hpp"
@@ -147,11 +148,11 @@ class view_runner {
         for (const int map : wanted_.maps) {
             for (const std::string& method : wanted_.methods) {
                 const bool traces = method == "raytraced";
-                if ((traces && map != wanted_.maps.front()) || renderer.why_not(method, light)) {
+                if ((traces && map != wanted_.maps.front()) || lab::why_not(method, light)) {
                     continue;
                 }
                 for (const std::optional<lab::bias_choice>& bias : biases()) {
-                    if (bias && renderer.why_not(method, light, *bias)) {
+                    if (bias && lab::why_not(method, light, *bias)) {
                         continue;
                     }
                     lab::stop_if_asked();
@@ -304,12 +305,12 @@ void run_lab(const lab::options& wanted) {
                     if (!wanted.preset.empty()) {
                         break; // a figure has methods of its own
                     }
-                    if (const auto reason = renderer.why_not(method, light)) {
+                    if (const auto reason = lab::why_not(method, light)) {
                         all.left_out.push_back({work.world.name, light.label, method, *reason});
                         continue;
                     }
                     for (const lab::bias_choice& bias : wanted.biases) {
-                        if (const auto reason = renderer.why_not(method, light, bias)) {
+                        if (const auto reason = lab::why_not(method, light, bias)) {
                             all.left_out.push_back({work.world.name, light.label, method, *reason});
                         }
                     }

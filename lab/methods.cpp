@@ -2,6 +2,7 @@
 
 #include "lab/bias_passes.hpp"
 #include "lab/light_picture.hpp"
+#include "lab/method_table.hpp"
 #include "lab/omni.hpp"
 #include "lab/passes.hpp"
 #include "lab/statistics.hpp"
@@ -17,92 +18,6 @@ namespace lab {
 namespace ws = warpshadow;
 
 namespace {
-
-/// Which matrices a method starts from.
-enum class map_base {
-    whole_scene, ///< all that the light reaches
-    stable,      ///< the ball around the view, on a fixed grid
-    minimal,     ///< what the camera can see
-    lispsm,      ///< the same, warped by one matrix
-    all_around   ///< faces or hemispheres of a point light
-};
-
-/// A method as the steps that it takes.
-struct method {
-    std::string_view name;
-    map_base base = map_base::whole_scene;
-    int partitions = 1;        ///< maps by view depth
-    bool desired_view = false; ///< crop to the lit view samples
-    bool fitted = false;       ///< projective warp fitted to the lit view samples
-    bool warp = false;         ///< tables, and triangles cut for them
-    omni_way omni = {};        ///< of maps all around
-};
-
-constexpr std::array methods{
-    method{.name = "sm"},
-    method{.name = "stable", .base = map_base::stable},
-    method{.name = "min-sm", .base = map_base::minimal},
-    method{.name = "dv", .desired_view = true},
-    method{.name = "lispsm", .base = map_base::lispsm},
-    method{.name = "fitted", .desired_view = true, .fitted = true},
-    method{.name = "fitted-2", .partitions = 2, .desired_view = true, .fitted = true},
-    method{.name = "min-sm-notw", .base = map_base::minimal, .warp = true},
-    method{.name = "lispsm-notw", .base = map_base::lispsm, .desired_view = true, .warp = true},
-    method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
-    method{.name = "notw", .desired_view = true, .warp = true},
-    method{.name = "notw-nodv", .warp = true},
-    method{.name = "cube6", .base = map_base::all_around},
-    method{.name = "cube6-cull", .base = map_base::all_around, .omni = {.cull_objects = true}},
-    method{.name = "cube6-efc",
-           .base = map_base::all_around,
-           .omni = {.cull_maps = true, .cull_objects = true}},
-    method{.name = "cube6-cull-gs",
-           .base = map_base::all_around,
-           .omni = {.cull_objects = true, .layered = true}},
-    method{.name = "cube6-efc-gs",
-           .base = map_base::all_around,
-           .omni = {.cull_maps = true, .cull_objects = true, .layered = true}},
-    method{.name = "dpsm", .base = map_base::all_around, .omni = {.hemispheres = true}},
-    method{.name = "dpsm-cull",
-           .base = map_base::all_around,
-           .omni = {.hemispheres = true, .cull_objects = true}},
-    method{.name = "dpsm-pc",
-           .base = map_base::all_around,
-           .omni = {.hemispheres = true, .cull_maps = true, .cull_objects = true}},
-    method{.name = "cube-notw",
-           .base = map_base::all_around,
-           .desired_view = true,
-           .warp = true,
-           .omni = {.cull_maps = true}},
-};
-
-constexpr auto names = [] {
-    std::array<std::string_view, methods.size() + 1> result;
-    std::transform(methods.begin(), methods.end(), result.begin(),
-                   [](const method& each) { return each.name; });
-    result.back() = "raytraced";
-    return result;
-}();
-
-const method& find_method(std::string_view name) {
-    const auto* const found = std::find_if(methods.begin(), methods.end(),
-                                           [&](const method& each) { return each.name == name; });
-    if (found == methods.end()) {
-        throw bad_input("no such method: " + std::string(name));
-    }
-    return *found;
-}
-
-/// Whether the maps of a method are fitted to the view: a point light then has maps for what is
-/// seen of its cube.
-bool follows_the_view(const method& how) {
-    return how.base != map_base::whole_scene || how.desired_view;
-}
-
-/// Whether the steps that all kinds of light share draw the maps, and not those of lab/omni.hpp.
-bool drawn_one_by_one(const method& how) {
-    return how.base != map_base::all_around || how.warp;
-}
 
 /// Cosine between normal and light, or 0 outside a spot light's cone; as lit_cosine in GLSL.
 double lit_cosine(const ws::light<double>& light, glm::dvec3 world, glm::dvec3 normal) {
@@ -130,10 +45,6 @@ int used_maps(const light_maps& chosen) {
 }
 
 } // namespace
-
-std::span<const std::string_view> method_names() {
-    return names;
-}
 
 struct renderer::state {
     state(const scene& world, glm::ivec2 view) : gpu(world, view), seen(view), seen_before(view) {}
@@ -350,57 +261,6 @@ g_buffer_samples renderer::samples(const camera_view& camera, const light_view& 
         }
     }
     return result;
-}
-
-std::optional<std::string> renderer::why_not(std::string_view name, const light_view& light) const {
-    if (name == "raytraced") {
-        return std::nullopt;
-    }
-    const method& how = find_method(name);
-    if (how.base == map_base::all_around && light.light.kind != ws::light_kind::point) {
-        return "faces of a cube and paraboloids are for a light that shines all around";
-    }
-    if (name == "notw" && light.light.kind == ws::light_kind::point) {
-        return "for the faces of a point light's cube it is called cube-notw";
-    }
-    if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
-        return "a texel of a fixed size has no meaning for a light with a position";
-    }
-    if (light.light.kind == ws::light_kind::point && how.partitions > 1) {
-        return "partitions of the view and faces of a cube do not go together";
-    }
-    if (light.light.kind == ws::light_kind::point && !follows_the_view(how)) {
-        return "a point light shines all around and has no single map";
-    }
-    return std::nullopt;
-}
-
-std::optional<std::string> renderer::why_not(std::string_view name, const light_view& light,
-                                             const bias_choice& bias) const {
-    if (name == "raytraced") {
-        return std::nullopt;
-    }
-    const method& how = find_method(name);
-    if (how.omni.hemispheres) {
-        return bias.label + " is for maps of depth, and paraboloids hold distances";
-    }
-    if (bias.depth == depth_kind::hyperbolic) {
-        return std::nullopt;
-    }
-    if (!drawn_one_by_one(how)) {
-        return bias.label + " is for maps drawn one by one";
-    }
-    if (how.warp) {
-        return bias.label + " is for maps without tables";
-    }
-    if (bias.depth == depth_kind::linear && light.light.kind == ws::light_kind::point) {
-        return bias.label + " is for lights with one map";
-    }
-    if (bias.depth == depth_kind::linear && how.base == map_base::lispsm &&
-        light.light.kind != ws::light_kind::directional) {
-        return bias.label + " is for sunlight where the map's own matrix warps";
-    }
-    return std::nullopt;
 }
 
 method_result renderer::run(std::string_view name, const view_request& request) {

@@ -98,14 +98,6 @@ class renderer {
 
     g_buffer_samples samples(const camera_view& camera, const light_view& light);
 
-    /// Why the method does not apply to the light, or nothing when it does.
-    [[nodiscard]] std::optional<std::string> why_not(std::string_view method,
-                                                     const light_view& light) const;
-
-    /// Why a bias does not apply to a method that applies to the light, or nothing when it does.
-    [[nodiscard]] std::optional<std::string>
-    why_not(std::string_view method, const light_view& light, const bias_choice& bias) const;
-
     /// Runs a method other than "raytraced", which needs no GPU.
     method_result run(std::string_view method, const view_request& request);
 
@@ -121,8 +113,5 @@ class renderer {
     struct state;
     std::unique_ptr<state> state_;
 };
-
-/// All methods, the ray tracer last.
-std::span<const std::string_view> method_names();
 
 } // namespace lab

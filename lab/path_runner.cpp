@@ -1,6 +1,7 @@
 #include "lab/path_runner.hpp"
 
 #include "lab/light_maps.hpp"
+#include "lab/method_table.hpp"
 
 #include <algorithm>
 
@@ -28,7 +29,7 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
     for (const int map : wanted.maps) {
         for (const std::string& method : wanted.methods) {
             // the ray tracer is what the others are compared with
-            if (method == "raytraced" || gpu.why_not(method, light)) {
+            if (method == "raytraced" || why_not(method, light)) {
                 continue;
             }
             movers.push_back({method, map, all.paths.size(), {}, {}});
