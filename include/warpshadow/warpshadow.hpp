@@ -5,6 +5,7 @@
 #include <warpshadow/bias.hpp>
 #include <warpshadow/build_options.hpp>
 #include <warpshadow/calipers.hpp>
+#include <warpshadow/cascades.hpp>
 #include <warpshadow/casters.hpp>
 #include <warpshadow/clip_space.hpp>
 #include <warpshadow/conventions.hpp>
@@ -18,6 +19,7 @@
 #include <warpshadow/importance_functions.hpp>
 #include <warpshadow/light.hpp>
 #include <warpshadow/lispsm.hpp>
+#include <warpshadow/metric.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/polytope.hpp>
 #include <warpshadow/predicates.hpp>

@@ -88,6 +88,10 @@ float_range float_range_of(std::string_view function, std::string_view parameter
     if (parameter == "size" && (function == "ws_settings_for" || function == "ws_longest_chord")) {
         return {1.0f, 16384.0f};
     }
+    if (function == "ws_split_distance") {
+        return parameter == "lambda" ? float_range{0.0f, 1.0f}
+                                     : float_range{1.0f / 1024.0f, 1.0e6f};
+    }
     return {0.0f, 0.0f};
 }
 

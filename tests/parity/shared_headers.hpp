@@ -2,12 +2,14 @@
 #pragma once
 
 #include <warpshadow/bias.hpp>
+#include <warpshadow/cascades.hpp>
 #include <warpshadow/clip_space.hpp>
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
 #include <warpshadow/importance_functions.hpp>
+#include <warpshadow/metric.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>

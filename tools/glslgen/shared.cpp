@@ -1,12 +1,14 @@
 // What is shared between C++ and GLSL: explicit instantiations for float, and by using-declarations
 // what is no template. The generator adds whatever these need.
 #include <warpshadow/bias.hpp>
+#include <warpshadow/cascades.hpp>
 #include <warpshadow/clip_space.hpp>
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
 #include <warpshadow/importance_functions.hpp>
+#include <warpshadow/metric.hpp>
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>
@@ -27,6 +29,8 @@ using bias = warpshadow::depth_bias<float>;
 using axes = warpshadow::texel_axes<float>;
 using volume = warpshadow::view_volume<float>;
 using seen = warpshadow::seen_point<float>;
+using gradients = warpshadow::image_gradients<float>;
+using extent = warpshadow::texel_extent<float>;
 using functions = warpshadow::importance_options<float>;
 
 // status
@@ -134,3 +138,14 @@ template float warpshadow::paraboloid_segments<float>(const vec3&, const vec3&, 
 
 // projective
 template vec2 warpshadow::fitted_position<float>(const mat3&, vec2);
+
+// cascades
+template float warpshadow::split_distance<float>(float, float, int, int, float);
+template int warpshadow::cascade_of<float>(float, vec4);
+template float warpshadow::cascade_blend<float>(float, float, float);
+
+// metric
+template gradients warpshadow::image_gradients_at<float>(const mat4&, vec3, vec2);
+template float warpshadow::largest_stretch<float>(vec3, vec3);
+template extent warpshadow::facing_extent<float>(const axes&, const gradients&, float);
+template extent warpshadow::surface_extent<float>(const axes&, const gradients&, vec3, float);
