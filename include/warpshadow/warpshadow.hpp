@@ -23,6 +23,7 @@
 #include <warpshadow/paraboloid.hpp>
 #include <warpshadow/polytope.hpp>
 #include <warpshadow/predicates.hpp>
+#include <warpshadow/principal_axis.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/rectilinear.hpp>
 #include <warpshadow/second_axis.hpp>
