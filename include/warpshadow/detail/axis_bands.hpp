@@ -175,8 +175,10 @@ inline void write_band_fast(const axis_job& job, int first, int last,
     };
     const int begin = first > job.radius ? first - job.radius : 0;
     const int end = job.radius < height - 1 - first ? first + job.radius : height - 1;
+    row_step step{nullptr, nullptr, 0.0, 0.0, nullptr};
     for (int y = begin; y <= end; ++y) {
-        const std::uint64_t added = move_row<true, false>(sums, row_of(y), nullptr, width).added;
+        step.in = row_of(y);
+        const std::uint64_t added = step_row<false, true, false>(sums, width, step).added;
         account(y, added);
         total += added;
     }
@@ -187,20 +189,21 @@ inline void write_band_fast(const axis_job& job, int first, int last,
         }
         const bool empty = total == 0;
         result.empty_rows += empty ? 1 : 0;
-        const double a = empty ? 0.0 : (1.0 - job.floor) / double(total);
-        const double b = (empty ? 1.0 : job.floor) / double(width);
-        scan_row(sums, width, a, b, nodes.data() + static_cast<std::size_t>(row) * (width + 1));
-        if (row + 1 == last) {
+        step.a = empty ? 0.0 : (1.0 - job.floor) / double(total);
+        step.b = (empty ? 1.0 : job.floor) / double(width);
+        step.nodes = nodes.data() + static_cast<std::size_t>(row) * (width + 1);
+        const bool more = row + 1 < last;
+        const bool remove = more && job.radius <= row;
+        const bool add = more && job.radius < height - 1 - row;
+        step.out = remove ? row_of(row - job.radius) : nullptr;
+        step.in = add ? row_of(row + 1 + job.radius) : nullptr;
+        const moved_row moved = add ? (remove ? step_row<true, true, true>(sums, width, step)
+                                              : step_row<true, true, false>(sums, width, step))
+                                    : (remove ? step_row<true, false, true>(sums, width, step)
+                                              : step_row<true, false, false>(sums, width, step));
+        if (!more) {
             return;
         }
-        const bool remove = job.radius <= row;
-        const bool add = job.radius < height - 1 - row;
-        const std::uint32_t* const out = remove ? row_of(row - job.radius) : nullptr;
-        const std::uint32_t* const in = add ? row_of(row + 1 + job.radius) : nullptr;
-        const moved_row moved = add ? (remove ? move_row<true, true>(sums, in, out, width)
-                                              : move_row<true, false>(sums, in, out, width))
-                                    : (remove ? move_row<false, true>(sums, in, out, width)
-                                              : moved_row{0, static_cast<std::uint32_t>(total)});
         if (add) {
             account(row + 1 + job.radius, moved.added);
         }
@@ -209,7 +212,7 @@ inline void write_band_fast(const axis_job& job, int first, int last,
         } else {
             total += moved.added;
             for (std::size_t i = 0; remove && i < width; ++i) {
-                total -= out[i];
+                total -= step.out[i];
             }
         }
     }

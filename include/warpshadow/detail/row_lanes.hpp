@@ -1,5 +1,5 @@
-// A row of the map at a time: counts added to and taken from a window, and the window's function
-// as floats. Written for vectors of counts, as wide as the machine has them.
+// A row of the map at a time: the function of a window as floats, and the window moved on by a row.
+// Written for vectors, and in one pass over the memory.
 #pragma once
 
 #include <cstddef>
@@ -8,111 +8,158 @@
 
 namespace warpshadow::detail {
 
-#if defined(__GNUC__)
-
-#if defined(__AVX512F__)
-inline constexpr std::size_t count_lanes = 16;
-#elif defined(__AVX2__)
-inline constexpr std::size_t count_lanes = 8;
-#else
-inline constexpr std::size_t count_lanes = 4;
-#endif
-
-template <typename Scalar, std::size_t N> struct lanes_type {
-    typedef Scalar type __attribute__((vector_size(N * sizeof(Scalar))));
-};
-template <typename Scalar, std::size_t N> using lanes_n = typename lanes_type<Scalar, N>::type;
-using count_vector = lanes_n<std::uint32_t, count_lanes>;
-using half_counts = lanes_n<std::int32_t, count_lanes / 2>;
-using half_doubles = lanes_n<double, count_lanes / 2>;
-using half_floats = lanes_n<float, count_lanes / 2>;
-
-// Sums of all lanes up to each; and of the last lane as all lanes. Zeros are shifted in.
-#if defined(__AVX512F__)
-inline count_vector scan_lanes(count_vector v) {
-    const count_vector z{};
-    v += __builtin_shufflevector(z, v, 0, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29,
-                                 30);
-    v +=
-        __builtin_shufflevector(z, v, 0, 0, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29);
-    v += __builtin_shufflevector(z, v, 0, 0, 0, 0, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27);
-    v += __builtin_shufflevector(z, v, 0, 0, 0, 0, 0, 0, 0, 0, 16, 17, 18, 19, 20, 21, 22, 23);
-    return v;
-}
-inline count_vector last_lane(count_vector v) {
-    return __builtin_shufflevector(v, v, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15,
-                                   15);
-}
-#elif defined(__AVX2__)
-inline count_vector scan_lanes(count_vector v) {
-    const count_vector z{};
-    v += __builtin_shufflevector(z, v, 0, 8, 9, 10, 11, 12, 13, 14);
-    v += __builtin_shufflevector(z, v, 0, 0, 8, 9, 10, 11, 12, 13);
-    v += __builtin_shufflevector(z, v, 0, 0, 0, 0, 8, 9, 10, 11);
-    return v;
-}
-inline count_vector last_lane(count_vector v) {
-    return __builtin_shufflevector(v, v, 7, 7, 7, 7, 7, 7, 7, 7);
-}
-#else
-inline count_vector scan_lanes(count_vector v) {
-    const count_vector z{};
-    v += __builtin_shufflevector(z, v, 0, 4, 5, 6);
-    v += __builtin_shufflevector(z, v, 0, 0, 4, 5);
-    return v;
-}
-inline count_vector last_lane(count_vector v) {
-    return __builtin_shufflevector(v, v, 3, 3, 3, 3);
-}
-#endif
-
-#else // one at a time
-inline constexpr std::size_t count_lanes = 1;
-#endif
-
 /// What moving a window by a row leaves.
 struct moved_row {
     std::uint64_t added; ///< exact sum of the row that came in
     std::uint32_t total; ///< sum of the window, modulo 2³²
 };
 
-/// Adds a row to the window and takes one from it; all sums modulo 2³².
+/// What becomes of a row of sums.
+struct row_step {
+    const std::uint32_t* in;  ///< counts to add, or null
+    const std::uint32_t* out; ///< counts to take away, or null
+    double a;                 ///< the function: (sum before k) · a + k · b
+    double b;
+    float* nodes; ///< receives width + 1 nodes of the sums as they were, or null
+};
+
+#if defined(__GNUC__)
+
+typedef std::uint32_t four_counts __attribute__((vector_size(16)));
+typedef std::int32_t four_ints __attribute__((vector_size(16)));
+typedef double four_doubles __attribute__((vector_size(32)));
+typedef float four_floats __attribute__((vector_size(16)));
+
+#if defined(__AVX2__)
+typedef std::uint32_t some_counts __attribute__((vector_size(32)));
+#else
+typedef four_counts some_counts;
+#endif
+inline constexpr std::size_t count_lanes = sizeof(some_counts) / sizeof(std::uint32_t);
+
+/// Counts that are done in one round of a loop, so that latencies overlap.
+inline constexpr std::size_t counts_at_once = 16;
+
+/// Counts below 2³¹, as signed numbers: those every machine converts.
+inline void convert(four_counts v, four_doubles& to) {
+#if defined(__AVX__) && !defined(__clang__)
+    // GCC 12 converts two halves without being told
+    to = __builtin_ia32_cvtdq2pd256(reinterpret_cast<four_ints>(v));
+#else
+    to = __builtin_convertvector(reinterpret_cast<four_ints>(v), four_doubles);
+#endif
+}
+
+/// Sums of the lanes up to each. Zeros are shifted in.
+inline four_counts scan_lanes(four_counts v) {
+    const four_counts z{};
+    v += __builtin_shufflevector(z, v, 0, 4, 5, 6);
+    v += __builtin_shufflevector(z, v, 0, 0, 4, 5);
+    return v;
+}
+
+/// Writes four nodes: (sum before) · a + kb.
+inline void put_nodes(const std::uint32_t* sums, four_counts& before, double a,
+                      const four_doubles& kb, float* nodes) {
+    four_counts v;
+    std::memcpy(&v, sums, sizeof v);
+    v = scan_lanes(v);
+    four_doubles f;
+    convert(v + before, f);
+    f = f * a + kb;
+    before += __builtin_shufflevector(v, v, 3, 3, 3, 3);
+    const four_floats node = __builtin_convertvector(f, four_floats);
+    std::memcpy(nodes, &node, sizeof node);
+}
+
+#endif
+
+/// Exact sum of a row of counts.
+inline std::uint64_t sum_of_row(const std::uint32_t* counts, std::size_t width) {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < width; ++i) {
+        sum += counts[i];
+    }
+    return sum;
+}
+
+/// Writes the function of a window, and moves the window on; all sums modulo 2³².
 ///
-/// @tparam Add, Remove whether there is such a row
-template <bool Add, bool Remove>
-moved_row move_row(std::uint32_t* sums, const std::uint32_t* in, const std::uint32_t* out,
-                   std::size_t width) {
+/// Node k is rounded once, to float. The sum of all is below 2³¹, and a · sum + b · width is 1 but
+/// for rounding. Each operation is monotone, hence so are the nodes; the first is 0 and the last 1.
+/// @tparam Write, Add, Remove whether there are nodes, a row to add and a row to take away
+template <bool Write, bool Add, bool Remove>
+moved_row step_row(std::uint32_t* sums, std::size_t width, const row_step& step) {
+    const std::uint32_t* const in = step.in;
+    const std::uint32_t* const out = step.out;
+    const double a = step.a;
+    const double b = step.b;
+    float* const nodes = Write ? step.nodes + 1 : nullptr; // nodes[i] is behind cell i
     moved_row moved{0, 0};
     std::size_t i = 0;
+    std::uint32_t first = 0; // sum before cell i
 #if defined(__GNUC__)
-    // low and high halves apart, so that 32 bits hold the sum of 65536 counts in each lane
-    count_vector low{};
-    count_vector high{};
-    count_vector all{};
-    for (; i + count_lanes <= width; i += count_lanes) {
-        count_vector sum;
-        std::memcpy(&sum, sums + i, sizeof sum);
+    some_counts added{};
+    some_counts bits{}; // of all counts that are added
+    some_counts all{};
+    four_counts before{};
+    four_doubles k{1.0, 2.0, 3.0, 4.0};
+    const four_doubles step_b = four_doubles{} + 4.0 * b;
+    const auto move = [&](std::size_t j) {
+        some_counts sum;
+        std::memcpy(&sum, sums + j, sizeof sum);
         if constexpr (Add) {
-            count_vector row;
-            std::memcpy(&row, in + i, sizeof row);
+            some_counts row;
+            std::memcpy(&row, in + j, sizeof row);
             sum += row;
-            low += row & 0xffffu;
-            high += row >> 16;
+            added += row;
+            bits |= row;
         }
         if constexpr (Remove) {
-            count_vector row;
-            std::memcpy(&row, out + i, sizeof row);
+            some_counts row;
+            std::memcpy(&row, out + j, sizeof row);
             sum -= row;
         }
+        if constexpr (Add || Remove) {
+            std::memcpy(sums + j, &sum, sizeof sum);
+        }
         all += sum;
-        std::memcpy(sums + i, &sum, sizeof sum);
+    };
+    for (; i + counts_at_once <= width; i += counts_at_once) {
+        if constexpr (Write) {
+            four_doubles kb = k * b;
+            put_nodes(sums + i, before, a, kb, nodes + i);
+            kb += step_b;
+            put_nodes(sums + i + 4, before, a, kb, nodes + i + 4);
+            kb += step_b;
+            put_nodes(sums + i + 8, before, a, kb, nodes + i + 8);
+            kb += step_b;
+            put_nodes(sums + i + 12, before, a, kb, nodes + i + 12);
+            k += double(counts_at_once);
+        }
+        move(i);
+        move(i + count_lanes);
+        if constexpr (count_lanes < 8) {
+            move(i + 2 * count_lanes);
+            move(i + 3 * count_lanes);
+        }
     }
+    std::uint32_t any = 0;
     for (std::size_t lane = 0; lane < count_lanes; ++lane) {
-        moved.added += low[lane] + (std::uint64_t(high[lane]) << 16);
+        moved.added += added[lane];
         moved.total += all[lane];
+        any |= bits[lane];
     }
+    if (std::uint64_t(any) * i >= std::uint64_t(1) << 32) {
+        moved.added = sum_of_row(in, i); // a lane may have overflowed
+    }
+    first = before[0];
 #endif
     for (; i < width; ++i) {
+        if constexpr (Write) {
+            first += sums[i];
+            nodes[i] = static_cast<float>(double(first) * a + double(i + 1) * b);
+        }
         if constexpr (Add) {
             sums[i] += in[i];
             moved.added += in[i];
@@ -122,68 +169,11 @@ moved_row move_row(std::uint32_t* sums, const std::uint32_t* in, const std::uint
         }
         moved.total += sums[i];
     }
+    if constexpr (Write) {
+        step.nodes[0] = 0.0f;
+        step.nodes[width] = 1.0f;
+    }
     return moved;
-}
-
-#if defined(__GNUC__)
-/// Nodes of one vector of sums: `before` + scan, times a, plus node number times b.
-inline void put_nodes(const std::uint32_t* sums, count_vector& before, half_doubles& k0,
-                      half_doubles& k1, double a, double b, float* nodes) {
-    constexpr std::size_t half = count_lanes / 2;
-    count_vector v;
-    std::memcpy(&v, sums, sizeof v);
-    v = scan_lanes(v) + before;
-    before = last_lane(v);
-    half_counts halves[2];
-    std::memcpy(halves, &v, sizeof v);
-    const half_doubles f0 = __builtin_convertvector(halves[0], half_doubles) * a + k0 * b;
-    const half_doubles f1 = __builtin_convertvector(halves[1], half_doubles) * a + k1 * b;
-    const half_floats n0 = __builtin_convertvector(f0, half_floats);
-    const half_floats n1 = __builtin_convertvector(f1, half_floats);
-    std::memcpy(nodes, &n0, sizeof n0);
-    std::memcpy(nodes + half, &n1, sizeof n1);
-    k0 += double(count_lanes);
-    k1 += double(count_lanes);
-}
-#endif
-
-/// Function of a window as floats: node k is (sum before k) · a + k · b, rounded once.
-///
-/// The sum of all is below 2³¹, and a · sum + b · width is 1 but for rounding. Each operation is
-/// monotone, hence so are the nodes.
-/// @param nodes receives width + 1 nodes, the first 0 and the last 1
-inline void scan_row(const std::uint32_t* sums, std::size_t width, double a, double b,
-                     float* nodes) {
-    nodes[0] = 0.0f;
-    ++nodes; // nodes[i] now is behind cell i
-    std::size_t i = 0;
-#if defined(__GNUC__)
-    count_vector before{};
-    half_doubles k0;
-    half_doubles k1;
-    for (std::size_t lane = 0; lane < count_lanes / 2; ++lane) {
-        k0[lane] = double(lane + 1);
-        k1[lane] = double(lane + 1 + count_lanes / 2);
-    }
-    for (; i + count_lanes <= width; i += count_lanes) {
-        put_nodes(sums + i, before, k0, k1, a, b, nodes + i);
-    }
-    if (i < width) {
-        // the same operations for what does not fill a vector
-        std::uint32_t rest[count_lanes] = {};
-        float last[count_lanes];
-        std::memcpy(rest, sums + i, (width - i) * sizeof rest[0]);
-        put_nodes(rest, before, k0, k1, a, b, last);
-        std::memcpy(nodes + i, last, (width - i) * sizeof last[0]);
-    }
-#else
-    std::uint32_t before = 0;
-    for (; i < width; ++i) {
-        before += sums[i];
-        nodes[i] = static_cast<float>(double(before) * a + double(i + 1) * b);
-    }
-#endif
-    nodes[width - 1] = 1.0f;
 }
 
 } // namespace warpshadow::detail
