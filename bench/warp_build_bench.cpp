@@ -3,8 +3,10 @@
 //
 // Run with --benchmark_enable_random_interleaving=true --benchmark_repetitions=7 and compare the
 // medians within one run.
+#include <warpshadow/unwarp_guide.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warp_points.hpp>
 
 #include <benchmark/benchmark.h>
 #include <glm/common.hpp>
@@ -68,6 +70,10 @@ struct built {
             turned[i] = counts_of(size)[i % w * w + i / w];
         }
         build({turned, size, size}, columns);
+        row_cells.resize(ws::guide_size(size, size));
+        column_cells.resize(row_cells.size());
+        ws::build_guide(row_table(), {row_cells, size, size});
+        ws::build_guide(column_table(), {column_cells, size, size});
     }
     static std::vector<float> nodes_of(int size) {
         return std::vector<float>(static_cast<std::size_t>(size) *
@@ -81,9 +87,13 @@ struct built {
     }
     [[nodiscard]] ws::table_view<float> row_table() const { return {rows, cells, cells}; }
     [[nodiscard]] ws::table_view<float> column_table() const { return {columns, cells, cells}; }
+    [[nodiscard]] ws::guide_view row_guide() const { return {row_cells, cells, cells}; }
+    [[nodiscard]] ws::guide_view column_guide() const { return {column_cells, cells, cells}; }
 
     std::vector<float> rows;
     std::vector<float> columns;
+    std::vector<std::uint16_t> row_cells;
+    std::vector<std::uint16_t> column_cells;
     int cells;
 };
 
@@ -260,6 +270,41 @@ void unwarp_each(benchmark::State& state, order kind) {
     });
 }
 
+template <typename Batch> void all_points(benchmark::State& state, order kind, Batch batch) {
+    const built& tables = tables_of(static_cast<int>(state.range(0)));
+    const std::vector<glm::vec2>& points = points_of(kind);
+    std::vector<glm::vec2> to(points.size());
+    for (auto _ : state) {
+        batch(tables, std::span<const glm::vec2>(points), std::span<glm::vec2>(to));
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+}
+
+void warp_batch(benchmark::State& state, order kind) {
+    all_points(state, kind, [](const built& t, auto from, auto to) {
+        ws::warp_points(t.row_table(), t.column_table(), from, to);
+    });
+}
+
+void unwarp_batch(benchmark::State& state, order kind) {
+    all_points(state, kind, [](const built& t, auto from, auto to) {
+        ws::unwarp_points(t.row_table(), t.column_table(), t.row_guide(), t.column_guide(), from,
+                          to);
+    });
+}
+
+void build_guides(benchmark::State& state) {
+    const auto size = static_cast<int>(state.range(0));
+    const built& tables = tables_of(size);
+    std::vector<std::uint16_t> cells(ws::guide_size(size, size));
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(ws::build_guide(tables.row_table(), {cells, size, size}));
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(state.iterations() * size * size);
+}
+
 void register_all() {
     const auto sized = [](benchmark::internal::Benchmark* b) {
         b->Arg(512)->Arg(1024)->Arg(2048)->Unit(benchmark::kMicrosecond);
@@ -268,6 +313,7 @@ void register_all() {
     sized(benchmark::RegisterBenchmark("build/window", build_map, ws::build_options<float>{}));
     sized(benchmark::RegisterBenchmark("build/radius20", build_map, with_radius(20)));
     sized(benchmark::RegisterBenchmark("build/plain20", build_plain, 20));
+    sized(benchmark::RegisterBenchmark("guide", build_guides));
     for (const order kind : {order::coherent, order::random}) {
         const std::string name = kind == order::coherent ? "coherent" : "random";
         const auto one = [&](const std::string& what, auto work) {
@@ -278,7 +324,9 @@ void register_all() {
         };
         one("warp/bilinear", warp_bilinear);
         one("warp/each", warp_each);
+        one("warp/points", warp_batch);
         one("unwarp/bisection", unwarp_each);
+        one("unwarp/points", unwarp_batch);
     }
 }
 

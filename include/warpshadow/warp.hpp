@@ -60,20 +60,28 @@ int table_rows(const table_view<T, Node>& table) {
     return table.rows;
 }
 
+namespace detail {
+
+/// Value of a stored node.
+template <typename T, typename Node> T node_value(Node node) {
+    if constexpr (std::is_integral_v<Node>) {
+        return T(node) / T(std::numeric_limits<Node>::max());
+    } else {
+        return T(node);
+    }
+}
+
+} // namespace detail
+
 /// Node k of the function of a row: F_row(k / cells).
 ///
 /// 0 ≤ row < rows and 0 ≤ k ≤ cells.
 template <typename T, typename Node>
 WS_GLSL_CALL("WS_TABLE_NODE($0, $1, $2)")
 T table_node(const table_view<T, Node>& table, int row, int k) {
-    const Node node =
+    return detail::node_value<T>(
         table.nodes[static_cast<std::size_t>(row) * (static_cast<std::size_t>(table.cells) + 1) +
-                    static_cast<std::size_t>(k)];
-    if constexpr (std::is_integral_v<Node>) {
-        return T(node) / T(std::numeric_limits<Node>::max());
-    } else {
-        return T(node);
-    }
+                    static_cast<std::size_t>(k)]);
 }
 
 /// x clamped to [0, 1]; 0 for NaN, so that it can be turned into an index.

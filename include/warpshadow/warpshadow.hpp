@@ -33,5 +33,7 @@
 #include <warpshadow/stable_fit.hpp>
 #include <warpshadow/status.hpp>
 #include <warpshadow/tessellation.hpp>
+#include <warpshadow/unwarp_guide.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warp_points.hpp>
