@@ -3,6 +3,7 @@
 #include "lab/bias_passes.hpp"
 #include "lab/light_picture.hpp"
 #include "lab/method_table.hpp"
+#include "lab/metric_passes.hpp"
 #include "lab/omni.hpp"
 #include "lab/passes.hpp"
 #include "lab/statistics.hpp"
@@ -227,6 +228,7 @@ struct renderer::state {
     passes gpu;
     omni_passes omni{gpu};
     bias_passes biased{gpu};
+    metric_passes metric{gpu};
     g_buffer seen, seen_before;
     std::vector<double> fit_us;     ///< times of the projective fit alone
     std::vector<double> culling_us; ///< times of sorting objects to the maps of a point light
@@ -354,7 +356,17 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         }
     }
     result.status = s.guards(how, chosen, maps);
+    std::vector<glm::vec4> extents; // before the pictures, which draw with a map of everything
+    if (!how.omni.hemispheres) {
+        extents = s.metric.measure(
+            maps, chosen, how.warp,
+            camera_matrix(camera_frustum(s.gpu.world(), request.camera, s.gpu.view())));
+        result.texels = metric_of(extents, maps.size, s.gpu.view());
+    }
     result.pictures = s.pictures(how, request, chosen, maps);
+    if (result.texels) {
+        result.pictures.push_back(heat_map(extents, s.gpu.view()));
+    }
     return result;
 }
 

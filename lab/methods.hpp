@@ -5,6 +5,8 @@
 #include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
 
+#include <warpshadow/metric.hpp>
+
 #include <glm/glm.hpp>
 
 #include <cstddef>
@@ -53,6 +55,12 @@ struct named_picture {
     std::vector<std::uint8_t> rgb;
 };
 
+/// Pixels that a texel covers, over the lit-facing samples: Lloyd's m, see warpshadow/metric.hpp.
+struct texel_metric {
+    warpshadow::metric_summary<double> on_receivers;
+    warpshadow::metric_summary<double> facing; ///< without the slope of the surface
+};
+
 /// What a method did.
 struct method_result {
     std::vector<std::uint8_t> shadowed; ///< per view sample: 1 = in shadow
@@ -66,7 +74,8 @@ struct method_result {
     std::size_t triangles; ///< rasterised into the shadow maps
     int maps;              ///< shadow maps drawn
     double angle;          ///< of the map's sides to the axes of the light, radians
-    std::vector<std::string> status; ///< names of the guards that fired
+    std::vector<std::string> status;    ///< names of the guards that fired
+    std::optional<texel_metric> texels; ///< of methods whose maps have a matrix
     std::vector<named_picture> pictures;
     std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for
     std::vector<float> light;        ///< share per view sample, where a filter was asked for

@@ -168,6 +168,23 @@ std::string pass_list(const method_result& result) {
     return html;
 }
 
+/// What the colours of a picture mean, where its name does not say.
+std::string_view caption_of(std::string_view name) {
+    return name == "texel-extent" ? ": pixels that a texel covers; blue ⅛ or less, white 1, red 8 "
+                                    "or more"
+                                  : "";
+}
+
+std::string texel_line(const method_result& result) {
+    if (!result.texels || result.texels->on_receivers.counted == 0) {
+        return "";
+    }
+    const auto& m = result.texels->on_receivers;
+    return "<p>a texel covers " + ms_text(m.p50) + "&nbsp;pixels in the median, " + ms_text(m.p99) +
+           " at 99&nbsp;%; without the slope of the surface " + ms_text(result.texels->facing.p50) +
+           " and " + ms_text(result.texels->facing.p99) + "</p>\n";
+}
+
 std::string view_section(const results& all, const view_pictures& view) {
     std::string html = "<section>\n<h2>" + escaped(view.scene) + "</h2>\n<p>camera " +
                        escaped(view.camera_text) + "<br>light " + escaped(view.light_text) +
@@ -192,6 +209,7 @@ std::string view_section(const results& all, const view_pictures& view) {
                             "&nbsp;% acne, displacement " +
                             texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels</p>\n"
                       : "") +
+            texel_line(run.result) +
             image(each.marked, view.scene + ", " + run.method + ", wrong pixels in red") +
             "<div class=\"pair\">" + image(each.detail, "detail", " class=\"pixel\"") +
             image(each.detail_marked, "detail, wrong pixels in red", " class=\"pixel\"") +
@@ -200,7 +218,7 @@ std::string view_section(const results& all, const view_pictures& view) {
             html += "<details><summary>inside the method</summary><div class=\"pair\">\n";
             for (const auto& [name, explained] : each.explanations) {
                 html += "<figure>" + image(explained, name, " class=\"pixel\"") + "<figcaption>" +
-                        escaped(name) + "</figcaption></figure>\n";
+                        escaped(name) + std::string(caption_of(name)) + "</figcaption></figure>\n";
             }
             html += "</div></details>\n";
         }

@@ -15,6 +15,15 @@ ordered_json number_or_null(std::optional<double> value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
+ordered_json json_of(const warpshadow::metric_summary<double>& m) {
+    ordered_json json;
+    json["max"] = m.max;
+    json["p99"] = m.p99;
+    json["p50"] = m.p50;
+    json["share_above_1"] = m.share_above_1;
+    return json;
+}
+
 ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     const comparison& c = run.against_truth;
     const method_result& r = run.result;
@@ -49,6 +58,11 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
                                        : ordered_json(static_cast<double>(c.grazing_wrong) /
                                                       static_cast<double>(c.grazing_samples));
     json["grazing"] = grazing;
+    if (r.texels) {
+        json["m"] = json_of(r.texels->on_receivers);
+        json["m_facing"] = json_of(r.texels->facing);
+        json["storage_factor"] = r.texels->on_receivers.storage_factor;
+    }
     ordered_json frame;
     frame["median"] = r.frame_ms_median;
     frame["min"] = r.frame_ms_min;

@@ -25,6 +25,7 @@ RUN_KEYS = {
     "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
     "bytes", "triangles", "maps", "angle_degrees", "status",
 }
+METRIC_KEYS = {"m", "m_facing", "storage_factor"}
 PATH_KEYS = ["scene", "camera", "light", "path", "method", "map", "view", "mean", "frames"]
 
 
@@ -91,7 +92,13 @@ def check_results(results):
     assert results["timing"] == ("glfinish" if software else "timer_query")
     assert bool(results["runs"]) != bool(results["paths"]), "one or the other"
     for entry in results["runs"]:
-        assert set(entry) - {"bias", "filter"} == RUN_KEYS, set(entry) ^ RUN_KEYS
+        # a paraboloid has no matrix, and the ray tracer no texels
+        measured = not entry["method"].startswith(("dpsm", "raytraced"))
+        keys = RUN_KEYS | (METRIC_KEYS if measured else set())
+        assert set(entry) - {"bias", "filter"} == keys, set(entry) ^ keys
+        for m in (entry["m"], entry["m_facing"]) if measured else ():
+            assert 0 <= m["p50"] <= m["p99"] <= m["max"] and 0 <= m["share_above_1"] <= 1
+            assert (m["max"] > 0) == (entry["samples"] > 0)
         assert entry["view"] == [96, 64]
         assert 0 <= entry["samples"] <= 96 * 64
         wrong, shadow, light = (
@@ -133,11 +140,23 @@ def check_every_method():
     by_name = {(r["method"], r["map"]): r["wrong_pixel_ratio"] for r in first["runs"]}
     assert by_name["sm", 128] < by_name["sm", 64], "a larger map is wrong less often"
     assert by_name["dv", 64] < 0.5, "better than a coin"
+    check_metric(first)
 
     kept = {p.name: p.read_bytes() for p in (scratch / "every").glob("*.png")}
     again = report("every", "--scene=leaves", "--methods=all", "--map=64,128")
     assert facts(first) == facts(again)
     assert kept == {p.name: p.read_bytes() for p in (scratch / "every").glob("*.png")}
+
+
+def check_metric(results):
+    """A texel of a map of twice the size covers half as many pixels, where the map is uniform."""
+    of = {(r["method"], r["map"]): r for r in results["runs"]}
+    for method in ("sm", "min-sm", "lispsm"):
+        small, large = (of[method, size] for size in (64, 128))
+        for m in ("m", "m_facing"):
+            for share in ("max", "p99", "p50"):
+                # min-sm leaves half a texel free at each border: its texels shrink a little less
+                assert abs(small[m][share] / large[m][share] - 2) < 0.05, (method, m, share)
 
 
 def check_spot_and_point():
