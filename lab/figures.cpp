@@ -138,7 +138,9 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
             continue;
         }
         run_record run{world.name, camera.label, light.label, plan.method, map, {}, {}};
-        run_method(run, gpu, {camera, light, map, wanted.seed, wanted.repeat, bias, plan.filter},
+        run_method(run, gpu,
+                   {camera, light, map, wanted.seed, wanted.repeat, bias, plan.filter,
+                    raster_of(wanted), &rays},
                    samples, truth);
         figure_record::cell cell{plan.row, plan.column, all.runs.size(), {}, {}};
         picture shown;

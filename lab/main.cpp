@@ -151,7 +151,7 @@ class view_runner {
                 if ((traces && map != wanted_.maps.front()) || lab::why_not(method, light)) {
                     continue;
                 }
-                for (const std::optional<lab::bias_choice>& bias : biases()) {
+                for (const auto& [bias, raster] : variants(method)) {
                     if (bias && lab::why_not(method, light, *bias)) {
                         continue;
                     }
@@ -169,8 +169,12 @@ class view_runner {
                     } else {
                         lab::run_method(record, renderer,
                                         {camera, light, map, wanted_.seed, wanted_.repeat, bias,
-                                         wanted_.filter},
+                                         wanted_.filter, raster.value_or(lab::raster_choice{}),
+                                         &rays},
                                         samples, truth.shadowed);
+                        if (raster) {
+                            record.raster = lab::raster_name(*raster);
+                        }
                         if (!record.result.light.empty()) {
                             record.filter = lab::filter_name(wanted_.filter.kind);
                         }
@@ -187,6 +191,29 @@ class view_runner {
     }
 
   private:
+    struct variant {
+        std::optional<lab::bias_choice> bias;
+        std::optional<lab::raster_choice> raster;
+    };
+
+    /// What one method is run with.
+    std::vector<variant> variants(const std::string& method) const {
+        std::vector<std::optional<lab::raster_choice>> rasters;
+        if (lab::has_tables(method)) {
+            rasters.assign(wanted_.rasters.begin(), wanted_.rasters.end());
+        }
+        if (rasters.empty()) {
+            rasters.emplace_back();
+        }
+        std::vector<variant> result;
+        for (const std::optional<lab::bias_choice>& bias : biases()) {
+            for (const std::optional<lab::raster_choice>& raster : rasters) {
+                result.push_back({bias, raster});
+            }
+        }
+        return result;
+    }
+
     /// Nothing where no bias was asked for.
     std::vector<std::optional<lab::bias_choice>> biases() const {
         std::vector<std::optional<lab::bias_choice>> result(wanted_.biases.begin(),
@@ -229,7 +256,8 @@ class view_runner {
                 const auto name = [&](const std::string& kind) {
                     return lab::picture_name(
                         {work.world.name, c, l, map,
-                         run.method + (run.bias ? "-" + *run.bias : std::string()) + kind});
+                         run.method + (run.bias ? "-" + *run.bias : std::string()) +
+                             (run.raster ? "-" + *run.raster : std::string()) + kind});
                 };
                 const lab::picture plain = run.result.light.empty()
                                                ? shader.shade(run.result.shadowed)
@@ -288,6 +316,7 @@ void run_lab(const lab::options& wanted) {
                  (wanted.preset.empty()
                       ? wanted.methods.size() * wanted.maps.size() *
                             std::max<std::size_t>(wanted.biases.size(), 1) *
+                            std::max<std::size_t>(wanted.rasters.size(), 1) *
                             (wanted.path.empty() ? 1 : static_cast<std::size_t>(wanted.frames))
                       : lab::runs_of_figure(wanted.preset));
     }

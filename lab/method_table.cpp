@@ -78,6 +78,10 @@ bool drawn_one_by_one(const method& how) {
     return how.base != map_base::all_around || how.warp;
 }
 
+bool has_tables(std::string_view name) {
+    return name != "raytraced" && find_method(name).warp;
+}
+
 std::optional<std::string> why_not(std::string_view name, const light_view& light) {
     if (name == "raytraced") {
         return std::nullopt;

@@ -45,6 +45,9 @@ const method& find_method(std::string_view name);
 /// Whether the steps that all kinds of light share draw the maps, and not those of lab/omni.hpp.
 [[nodiscard]] bool drawn_one_by_one(const method& how);
 
+/// Whether a method, "raytraced" included, has maps with tables.
+[[nodiscard]] bool has_tables(std::string_view name);
+
 /// Why the method does not apply to the light, or nothing when it does.
 [[nodiscard]] std::optional<std::string> why_not(std::string_view name, const light_view& light);
 

@@ -100,7 +100,7 @@ struct renderer::state {
             }
             if (how.warp) {
                 gpu.build_tables(maps, i, count);
-                gpu.draw_warped_map(maps, i, count);
+                warped.draw_map(maps, i, request.raster, request.rays, count);
             } else {
                 gpu.timed_pass("shadow map", [&] {
                     if (request.bias) {
@@ -168,7 +168,7 @@ struct renderer::state {
                 flags |= ws::status::empty_importance;
             }
         }
-        for (const triangle_counts& each : gpu.counted()) {
+        for (const triangle_counts& each : warped.counted()) {
             flags |= each.lost > 0 ? ws::status::capacity_reached : ws::status::ok;
             flags |= each.uncut > 0 ? ws::status::bound_missed : ws::status::ok;
         }
@@ -226,6 +226,7 @@ struct renderer::state {
     }
 
     passes gpu;
+    warped_raster warped{gpu};
     omni_passes omni{gpu};
     bias_passes biased{gpu};
     metric_passes metric{gpu};
@@ -295,9 +296,9 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     s.culling_us.clear();
     // the first frame warms up and, with tables, finds how long the lists must be
     do {
-        s.gpu.forget_counts();
+        s.warped.forget_counts();
         frame(true);
-    } while (how.warp && s.gpu.grow_lists());
+    } while (how.warp && s.warped.grow_lists());
     glFinish();
 
     std::vector<double> frames;
@@ -334,13 +335,13 @@ method_result renderer::run(std::string_view name, const view_request& request) 
                                       request.filter, s.seen,
                                       camera_frustum(s.gpu.world(), request.camera, s.gpu.view()));
     }
-    result.bytes = maps.bytes() + (how.warp ? s.gpu.list_bytes() : 0);
+    result.bytes = maps.bytes() + (how.warp ? s.warped.list_bytes() : 0);
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;
     result.triangles = s.gpu.world().triangles.size() * static_cast<std::size_t>(result.maps);
     if (how.warp) {
         result.triangles = 0;
-        for (const triangle_counts& each : s.gpu.counted()) {
+        for (const triangle_counts& each : s.warped.counted()) {
             result.triangles += each.vertex_count / 3;
         }
     }
@@ -392,11 +393,11 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     light_maps chosen;
     do {
         memory.light = before;
-        s.gpu.forget_counts();
+        s.warped.forget_counts();
         s.gpu.watch().start();
         chosen = s.frame(how, request, memory.light, maps, true);
         result.frame_ms = s.gpu.watch().stop();
-    } while (how.warp && s.gpu.grow_lists());
+    } while (how.warp && s.warped.grow_lists());
     result.shadowed = s.gpu.shadowed();
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;

@@ -4,6 +4,7 @@
 #include "lab/bias.hpp"
 #include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
+#include "lab/warped_raster.hpp"
 
 #include <warpshadow/metric.hpp>
 
@@ -30,6 +31,8 @@ struct view_request {
     int repeat;                                     ///< frames timed after the warm-up
     std::optional<bias_choice> bias = std::nullopt; ///< to be measured; else the plane's
     filter_choice filter = {};                      ///< for pictures
+    raster_choice raster = {};                      ///< of maps with tables
+    const ray_tracer* rays = nullptr;               ///< for maps without a rasteriser
 };
 
 /// View samples, row 0 at the bottom of the picture.

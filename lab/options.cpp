@@ -29,6 +29,15 @@ Biases (--bias), each measured by its acne and by how far shadows recede:
   linear, back-face         none, with the light's own depth, or with back faces in the map;
                             slope+linear, footprint+back-face and so on
 
+Ways to draw maps with tables (--raster); the warp bends edges, rasterisers draw straight ones:
+  none            warped corners, all else interpolated
+  fragment        the same, with the depth of the unwarped place per fragment
+  rule:PERCENT    and edges cut down to a share of the map: 5, 2.5 and 1 in the papers
+  bound:TEXELS    and edges cut until they surely depart by no more than so many texels
+  exact           what surely holds the curved triangle is drawn, and each fragment asks whether
+                  its unwarped place lies in the triangle; the default
+  ideal           no rasteriser: a ray per texel; the time is that of the CPU
+
 Figures (--preset), over a scene, camera and light of your choice:
   figure6   biases (Scherzer 2005, figure 6): none, constant, slope-scale and footprint, each with
             hyperbolic and linear depth and with back faces, for lispsm, fitted and sm
@@ -155,6 +164,10 @@ void check_methods(std::vector<std::string>& wanted, std::span<const std::string
 
 } // namespace
 
+raster_choice raster_of(const options& wanted) {
+    return wanted.rasters.empty() ? raster_choice{} : wanted.rasters.front();
+}
+
 std::optional<options> parse_options(int argc, const char* const* argv,
                                      std::span<const std::string_view> methods) {
     options result;
@@ -173,6 +186,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     std::string frames;
     std::vector<std::string> biases;
     std::string filter;
+    std::vector<std::string> rasters;
     const auto list = [&](const char* name, std::vector<std::string>& to, const char* about) {
         app.add_option(name, to, about)->allow_extra_args(false);
     };
@@ -190,6 +204,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     app.add_option("--filter", filter,
                    "Shadows in the pictures: none, pcf (2 x 2 texels), blur (the same, blurred in "
                    "the picture); wrong pixels are counted without (none)");
+    list("--raster", rasters,
+         "Comma-separated ways to draw maps with tables, to compare (exact); see below");
     app.add_option("--preset", result.preset, "Redo a figure of Scherzer 2005: figure6 or figure8");
     app.add_option("--path", result.path,
                    "Move the camera and follow every frame: yaw, forward, strafe, orbit, walk or a "
@@ -263,6 +279,14 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     replace_if_given(bias_texts, biases);
     for (const std::string& text : bias_texts) {
         result.biases.push_back(parse_bias(text));
+    }
+    std::vector<std::string> raster_texts;
+    replace_if_given(raster_texts, rasters);
+    for (const std::string& text : raster_texts) {
+        result.rasters.push_back(parse_raster(text));
+    }
+    if (result.rasters.size() > 1 && !(result.path.empty() && result.preset.empty())) {
+        throw bad_input("--path and --preset take one --raster");
     }
     if (!filter.empty()) {
         result.filter.kind = parse_filter(filter);

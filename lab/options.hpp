@@ -3,6 +3,7 @@
 
 #include "lab/bias.hpp"
 #include "lab/scene.hpp"
+#include "lab/warped_raster.hpp"
 
 #include <glm/glm.hpp>
 
@@ -23,15 +24,19 @@ struct options {
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
-    std::vector<bias_choice> biases; ///< to be compared; none: the exact test, not measured
-    filter_choice filter;            ///< of the shadows in pictures
-    std::string preset;              ///< a figure to redo, see lab/figures.hpp, or none
+    std::vector<bias_choice> biases;    ///< to be compared; none: the exact test, not measured
+    filter_choice filter;               ///< of the shadows in pictures
+    std::vector<raster_choice> rasters; ///< of maps with tables, to be compared; none: the default
+    std::string preset;                 ///< a figure to redo, see lab/figures.hpp, or none
     std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
     int frames = 60;  ///< along the path
     unsigned seed = 1;
     std::string out = "warpshadow-report";
     bool list_scenes = false;
 };
+
+/// The first way to draw maps with tables that was asked for, or the default.
+raster_choice raster_of(const options& wanted);
 
 /// Reads the command line; nothing when help was asked for and printed.
 /// @throws bad_input with one line for anything that cannot be understood.

@@ -16,14 +16,6 @@ namespace ws = warpshadow;
 
 namespace {
 
-/// When the shadow pass cuts an edge: always above this share of the map (the finest of Rosen
-/// 2012), never below so many texels, and in between when the warp bends it by more than the last.
-constexpr double always_cut_share = 0.01;
-constexpr double never_cut_texels = 0.5;
-constexpr double bend_texels = 1.0;
-
-constexpr std::size_t map_triangle_bytes = 48;
-
 /// Mirror of `light_buffer` in shaders/light.glsl.
 struct light_block {
     glm::vec4 position{0.0f};
@@ -51,14 +43,7 @@ enum unit : GLuint {
     unit_centres = 4,
     unit_map = 5
 };
-enum binding : GLuint {
-    on_light = 4,
-    on_desired_view = 5,
-    on_counts = 6,
-    on_ready = 7,
-    on_waiting = 8,
-    on_next = 9
-};
+enum binding : GLuint { on_light = 4, on_desired_view = 5 };
 
 /// Sets bounds of view samples to those of no sample.
 void clear_bounds(gl::buffer& bounds) {
@@ -104,11 +89,9 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
       mesh_(world_.positions, world_.triangles),
       normals_(std::span<const glm::vec4>(face_normals())), mask_(GL_R8UI, view_.x, view_.y),
       light_buffer_(sizeof(light_block) + most_maps * sizeof(map_block), nullptr, GL_DYNAMIC_DRAW),
-      counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW),
       depths_(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW), watch_(gl::best_timing()) {
     draw_g_buffer_ = link("g_buffer.vert", "g_buffer.frag");
     draw_plain_ = link("shadow_plain.vert", "empty.frag");
-    draw_warped_ = link("shadow_warped.vert", "shadow_warped.frag");
     find_desired_view_ = compute("desired_view.comp");
     find_depth_range_ = compute("depth_range.comp");
     crop_ = compute("crop.comp");
@@ -117,15 +100,12 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     sum_columns_ = compute("column_sums.comp");
     build_axis_ = compute("build_axis.comp");
     unwarp_centres_ = compute("unwarp_centres.comp");
-    set_up_triangles_ = compute("triangle_setup.comp");
-    cut_triangles_ = compute("triangle_cut.comp");
     test_plain_ = compute("shadow_test.comp");
     test_warped_ = compute("shadow_test.comp", {"WARPED"});
     for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &splat_rows_,
                                        &splat_columns_, &test_plain_, &test_warped_}) {
         set_units(*program);
     }
-    set_capacity(2 * world_.triangles.size() + 65536, 65536);
 }
 
 void passes::set_units(const gl::program& program) {
@@ -159,20 +139,15 @@ std::vector<glm::vec4> passes::face_normals() const {
     return result;
 }
 
-gl::program passes::link(const char* vertex, const char* fragment) const {
-    return gl::program({{GL_VERTEX_SHADER, library_.load(std::string("lab/") + vertex)},
-                        {GL_FRAGMENT_SHADER, library_.load(std::string("lab/") + fragment)}});
+gl::program passes::link(const char* vertex, const char* fragment,
+                         const std::vector<std::string>& defines) const {
+    return gl::program(
+        {{GL_VERTEX_SHADER, library_.load(std::string("lab/") + vertex, defines)},
+         {GL_FRAGMENT_SHADER, library_.load(std::string("lab/") + fragment, defines)}});
 }
 
 gl::program passes::compute(const char* file, const std::vector<std::string>& defines) const {
     return gl::program::compute(library_.load(std::string("lab/") + file, defines));
-}
-
-void passes::set_capacity(std::size_t ready_count, std::size_t waiting_count) {
-    ready_ = gl::buffer(ready_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
-    for (gl::buffer& list : waiting_) {
-        list = gl::buffer(waiting_count * map_triangle_bytes, nullptr, GL_DYNAMIC_COPY);
-    }
 }
 
 void passes::time_into(std::map<std::string, std::vector<double>>* times) {
@@ -243,9 +218,8 @@ void passes::use(const g_buffer& seen, const light_maps& maps, const ws::light<d
 }
 
 void passes::select_map(std::size_t index) {
-    for (const gl::program* program :
-         {&draw_plain_, &find_desired_view_, &crop_, &splat_rows_, &splat_columns_,
-          &set_up_triangles_, &cut_triangles_, &test_warped_}) {
+    for (const gl::program* program : {&draw_plain_, &find_desired_view_, &crop_, &splat_rows_,
+                                       &splat_columns_, &test_warped_}) {
         program->set("map_index", static_cast<int>(index));
     }
 }
@@ -356,60 +330,6 @@ void passes::draw_plain_map(map_resources& maps, std::size_t index) {
     mesh_.draw();
 }
 
-void passes::draw_warped_map(map_resources& maps, std::size_t index, bool count) {
-    select_map(index);
-    const double size = maps.size;
-    const double shortest = never_cut_texels / size;
-    for (const gl::program* program : {&set_up_triangles_, &cut_triangles_}) {
-        program->set("longest", static_cast<float>(always_cut_share));
-        program->set("shortest", static_cast<float>(shortest));
-        program->set("deviation", static_cast<float>(bend_texels / size));
-    }
-    timed_pass("cut triangles", [&] {
-        const triangle_counts none;
-        counters_.write(0, sizeof none, &none);
-        mesh_.positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-        mesh_.indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
-        normals_.bind_base(GL_SHADER_STORAGE_BUFFER, 2);
-        counters_.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
-        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
-        waiting_[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
-        const int triangles = static_cast<int>(world_.triangles.size());
-        set_up_triangles_.set("triangle_count", triangles);
-        set_up_triangles_.dispatch(triangles);
-        gl::wait_for_writes();
-        // three halvings, one of each edge, make a triangle half as large; no edge is longer
-        // than the map's diagonal at first
-        const int rounds =
-            3 * static_cast<int>(std::ceil(std::log2(std::sqrt(2.0) / shortest))) + 1;
-        for (int round = 0; round < rounds; ++round) {
-            const std::size_t source = static_cast<std::size_t>(round % 2);
-            const std::uint32_t zero = 0;
-            counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
-                            sizeof zero, &zero);
-            waiting_[source].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
-            waiting_[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
-            cut_triangles_.set("list", static_cast<int>(source));
-            cut_triangles_.set("last_round", static_cast<int>(round + 1 == rounds));
-            cut_triangles_.dispatch(64 * 64);
-            gl::wait_for_writes();
-        }
-    });
-    timed_pass("shadow map", [&] {
-        maps.targets[index].bind();
-        glClear(GL_DEPTH_BUFFER_BIT);
-        draw_warped_.use();
-        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
-        nothing_.bind();
-        counters_.bind(GL_DRAW_INDIRECT_BUFFER);
-        glDrawArraysIndirect(GL_TRIANGLES, nullptr);
-        gl::wait_for_writes();
-    });
-    if (count) {
-        counted_.push_back(counters_.read<triangle_counts>().front());
-    }
-}
-
 void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool warped) {
     bind_depth(maps);
     mask_.bind_image(0, GL_WRITE_ONLY);
@@ -436,25 +356,6 @@ std::vector<float> passes::draw_depths(const glm::dmat4& matrix, int size) {
     write_map(0, matrix);
     draw_plain_map(whole, 0);
     return whole.depth.read<float>();
-}
-
-bool passes::grow_lists() {
-    const std::size_t ready_count = ready_.bytes() / map_triangle_bytes;
-    const std::size_t waiting_count = waiting_[0].bytes() / map_triangle_bytes;
-    const bool lost = std::any_of(counted_.begin(), counted_.end(),
-                                  [](const triangle_counts& each) { return each.lost > 0; });
-    const bool crowded = std::any_of(counted_.begin(), counted_.end(),
-                                     [](const triangle_counts& each) { return each.crowded > 0; });
-    if ((!lost && !crowded) || ready_count > most_triangles || waiting_count > most_triangles) {
-        return false;
-    }
-    counted_.clear();
-    set_capacity(lost ? 2 * ready_count : ready_count, crowded ? 2 * waiting_count : waiting_count);
-    return true;
-}
-
-std::size_t passes::list_bytes() const {
-    return ready_.bytes() + waiting_[0].bytes() + waiting_[1].bytes();
 }
 
 glm::mat4 passes::matrix_in_use(std::size_t index) const {

@@ -47,19 +47,6 @@ struct map_resources {
     [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Mirror of `triangle_counts` in shaders/triangles.glsl.
-struct triangle_counts {
-    std::uint32_t vertex_count = 0;
-    std::uint32_t instance_count = 1;
-    std::uint32_t first_vertex = 0;
-    std::uint32_t base_instance = 0;
-    std::array<std::uint32_t, 2> waiting{};
-    std::uint32_t lost = 0;
-    std::uint32_t crowded = 0;
-    std::uint32_t uncut = 0;
-    std::uint32_t padding = 0;
-};
-
 /// One scene on the GPU, and the programs that draw its shadows.
 class passes {
   public:
@@ -98,26 +85,18 @@ class passes {
     /// Importance of one map, and the functions of both axes.
     void build_tables(map_resources& maps, std::size_t index, bool keep_counts);
     void draw_plain_map(map_resources& maps, std::size_t index);
-    /// Cuts the scene's triangles for one map's tables and draws them; `count` reads back how many.
-    void draw_warped_map(map_resources& maps, std::size_t index, bool count);
     /// Shadow test of all samples in use.
     void test_shadows(map_resources& maps, const light_maps& chosen, bool warped);
     /// Only the depths of one map, into a texture of no array; for pictures.
     std::vector<float> draw_depths(const glm::dmat4& matrix, int size);
 
-    /// Makes the triangle lists large enough for what was counted since the last call; false if
-    /// they were.
-    bool grow_lists();
-    void forget_counts() { counted_.clear(); }
-    /// Of the maps drawn since they were last forgotten.
-    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
-    [[nodiscard]] std::size_t list_bytes() const;
     /// The matrix of a map after a crop on the device.
     [[nodiscard]] glm::mat4 matrix_in_use(std::size_t index) const;
     [[nodiscard]] std::vector<std::uint8_t> shadowed() const;
 
     /// What other passes over the same scene and view need.
-    [[nodiscard]] gl::program link(const char* vertex, const char* fragment) const;
+    [[nodiscard]] gl::program link(const char* vertex, const char* fragment,
+                                   const std::vector<std::string>& defines = {}) const;
     [[nodiscard]] gl::program compute(const char* file,
                                       const std::vector<std::string>& defines = {}) const;
     /// Tells a program where the G-buffer and the shadow map are bound.
@@ -134,13 +113,10 @@ class passes {
 
   private:
     [[nodiscard]] std::vector<glm::vec4> face_normals() const;
-    void set_capacity(std::size_t ready_count, std::size_t waiting_count);
     void note(const char* name, double ms);
     void select_map(std::size_t index);
     void write_map(std::size_t index, const glm::dmat4& matrix);
     void build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts);
-
-    static constexpr std::size_t most_triangles = std::size_t{1} << 22;
 
     const scene& world_;
     glm::ivec2 view_;
@@ -148,20 +124,16 @@ class passes {
     gl::mesh mesh_;
     gl::buffer normals_;
     gl::texture mask_;
-    gl::buffer light_buffer_, counters_, depths_;
+    gl::buffer light_buffer_, depths_;
     gl::texture histogram_;
-    gl::buffer ready_;
-    std::array<gl::buffer, 2> waiting_;
-    gl::vertex_array nothing_;
-    gl::program draw_g_buffer_, draw_plain_, draw_warped_;
+    gl::program draw_g_buffer_, draw_plain_;
     gl::program find_desired_view_, find_depth_range_, crop_, splat_rows_, splat_columns_,
         sum_columns_, build_axis_, unwarp_centres_;
-    gl::program set_up_triangles_, cut_triangles_, test_plain_, test_warped_;
+    gl::program test_plain_, test_warped_;
     gl::stopwatch watch_;
     std::map<std::string, std::vector<double>>* times_ = nullptr;
     std::map<std::string, double> frame_times_;
     std::vector<std::string> order_;
-    std::vector<triangle_counts> counted_;
 };
 
 } // namespace lab

@@ -54,8 +54,17 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
         for (mover& each : movers) {
             stop_if_asked();
             progress.show(world.name + " " + each.method + " frame " + std::to_string(frame));
-            moving_frame moved =
-                gpu.next_frame(each.method, {camera, light, each.map, wanted.seed, 1}, each.memory);
+            moving_frame moved = gpu.next_frame(each.method,
+                                                {camera,
+                                                 light,
+                                                 each.map,
+                                                 wanted.seed,
+                                                 1,
+                                                 std::nullopt,
+                                                 {},
+                                                 raster_of(wanted),
+                                                 &rays},
+                                                each.memory);
             const comparison against_truth = compare(samples, truth, moved.shadowed);
             path_frame row{};
             row.wrong_ratio =

@@ -37,7 +37,7 @@ std::string image(const png_file& source, const std::string& what, const char* k
 
 /// A method with its bias, if that was measured.
 std::string label_of(const run_record& run) {
-    return run.bias ? run.method + " " + *run.bias : run.method;
+    return run.bias ? method_text(run) + " " + *run.bias : method_text(run);
 }
 
 bool any_bias(const results& all) {
@@ -129,7 +129,8 @@ std::string table(const results& all) {
         html += "<tr>" + cell(run.scene, false) + cell(run.camera, false) + cell(run.light, false) +
                 "<td><i class=\"dot c" +
                 std::to_string(rank_of(all, label_of(run)) % plot_colours) + "\"></i>" +
-                escaped(run.method) + "</td>" + cell(run.map == 0 ? "–" : std::to_string(run.map)) +
+                escaped(method_text(run)) + "</td>" +
+                cell(run.map == 0 ? "–" : std::to_string(run.map)) +
                 (any_bias(all) ? bias_cells(run) : "") +
                 cell(percent_text(c.ratio(c.false_shadow + c.false_light))) +
                 cell(percent_text(c.ratio(c.false_shadow))) +
@@ -211,7 +212,7 @@ std::string view_section(const results& all, const view_pictures& view) {
                             texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels</p>\n"
                       : "") +
             texel_line(run.result) +
-            image(each.marked, view.scene + ", " + run.method + ", wrong pixels in red") +
+            image(each.marked, view.scene + ", " + method_text(run) + ", wrong pixels in red") +
             "<div class=\"pair\">" + image(each.detail, "detail", " class=\"pixel\"") +
             image(each.detail_marked, "detail, wrong pixels in red", " class=\"pixel\"") +
             "</div>\n" + pass_list(run.result);

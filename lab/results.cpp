@@ -34,6 +34,9 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     json["method"] = run.method;
     json["map"] = run.map;
     json["view"] = {view.x, view.y};
+    if (run.raster) {
+        json["raster"] = *run.raster;
+    }
     if (run.bias) {
         const bias_measures& effect = run.bias_effect;
         ordered_json bias;
@@ -226,6 +229,10 @@ std::vector<std::string> left_out_lines(const results& all) {
     return lines;
 }
 
+std::string method_text(const run_record& run) {
+    return run.raster ? run.method + " " + *run.raster : run.method;
+}
+
 std::string percent_text(std::optional<double> ratio) {
     if (!ratio) {
         return "-";
@@ -271,7 +278,7 @@ std::string table_of(const results& all) {
                                                 "frame ms", "bytes"}};
     for (const run_record& run : all.runs) {
         const comparison& c = run.against_truth;
-        rows.push_back({run.scene, run.camera, run.light, run.method,
+        rows.push_back({run.scene, run.camera, run.light, method_text(run),
                         run.map == 0 ? "-" : std::to_string(run.map),
                         percent_text(c.ratio(c.false_shadow + c.false_light)),
                         percent_text(c.ratio(c.false_shadow)), percent_text(c.ratio(c.false_light)),

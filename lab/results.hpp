@@ -25,7 +25,8 @@ struct run_record {
     method_result result;
     std::optional<std::string> bias = std::nullopt; ///< as it was asked for; none: not measured
     bias_measures bias_effect = {};
-    std::string filter = "none"; ///< of the shadows in the pictures
+    std::string filter = "none";                      ///< of the shadows in the pictures
+    std::optional<std::string> raster = std::nullopt; ///< as it was asked for, of maps with tables
 };
 
 /// Runs in rows and columns.
@@ -73,6 +74,9 @@ std::string table_of(const results& all);
 
 /// What was left out and why, one line for all methods with the same reason.
 std::vector<std::string> left_out_lines(const results& all);
+
+/// A method with its way to rasterise, if that was asked for.
+std::string method_text(const run_record& run);
 
 /// A share as per cent, "-" when there is none.
 std::string percent_text(std::optional<double> ratio);

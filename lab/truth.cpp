@@ -53,6 +53,7 @@ bool is_surface(const g_buffer_samples& samples, std::size_t i) {
 struct ray_tracer::state {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
+    const lab::scene* world = nullptr;
     double diagonal = 0.0;
     std::atomic<std::ptrdiff_t> bytes{0};
 
@@ -78,6 +79,7 @@ struct ray_tracer::state {
 };
 
 ray_tracer::ray_tracer(const scene& world) : state_(std::make_unique<state>()) {
+    state_->world = &world;
     state_->diagonal = glm::length(world.box.hi - world.box.lo);
     state_->device = rtcNewDevice(nullptr);
     if (state_->device == nullptr) {
@@ -150,6 +152,34 @@ traced_shadows ray_tracer::shadows(const g_buffer_samples& samples, const light_
     });
     result.ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+}
+
+std::vector<double> ray_tracer::first_hits(std::span<const glm::dvec3> from,
+                                           std::span<const glm::dvec3> to) const {
+    std::vector<double> result(from.size(), 2.0);
+    const scene& world = *state_->world;
+    in_parallel(from.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const glm::dvec3 way = to[i] - from[i];
+            RTCRayHit hit{};
+            hit.ray = make_ray(glm::vec3(from[i]), glm::vec3(way), 1.0f);
+            hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            RTCIntersectContext context;
+            rtcInitIntersectContext(&context);
+            rtcIntersect1(state_->scene, &context, &hit);
+            if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+                continue;
+            }
+            const glm::uvec3& t = world.triangles[hit.hit.primID];
+            const glm::dvec3 a(world.positions[t.x]);
+            const glm::dvec3 normal = glm::cross(glm::dvec3(world.positions[t.y]) - a,
+                                                 glm::dvec3(world.positions[t.z]) - a);
+            const double slope = glm::dot(normal, way);
+            result[i] = slope != 0.0 ? glm::dot(normal, a - from[i]) / slope
+                                     : static_cast<double>(hit.ray.tfar);
+        }
+    });
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace lab {
@@ -20,6 +21,7 @@ struct traced_shadows {
 /// Embree's acceleration structure of one scene. All cores trace.
 class ray_tracer {
   public:
+    /// The scene outlives it.
     explicit ray_tracer(const scene& world);
     ~ray_tracer();
     ray_tracer(const ray_tracer&) = delete;
@@ -31,6 +33,11 @@ class ray_tracer {
     /// face the light are in shadow without a ray; the background never is.
     [[nodiscard]] traced_shadows shadows(const g_buffer_samples& samples,
                                          const light_view& light) const;
+
+    /// Where the ways between pairs of points first meet the scene: the share of each way, exact
+    /// for the plane of the triangle that is met, or 2 where nothing is.
+    [[nodiscard]] std::vector<double> first_hits(std::span<const glm::dvec3> from,
+                                                 std::span<const glm::dvec3> to) const;
 
     /// Memory that the acceleration structure takes.
     [[nodiscard]] std::size_t bytes() const;

@@ -11,6 +11,7 @@
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/cube.hpp>
 #include <warpshadow/cull.hpp>
+#include <warpshadow/edge_walk.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/focus.hpp>
 #include <warpshadow/frustum.hpp>
@@ -37,3 +38,4 @@
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warp_points.hpp>
+#include <warpshadow/warped_hull.hpp>

@@ -6,7 +6,8 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer positions { float position[]; };
 layout(std430, binding = 1) readonly buffer indices { uint index[]; };
 layout(std430, binding = 2) readonly buffer face_normals { vec4 face_normal[]; };
-layout(std430, binding = 8) writeonly buffer waiting_triangles { map_triangle waiting_list[]; };
+layout(std430, binding = 8) writeonly buffer waiting_triangles { waiting_piece waiting_list[]; };
+layout(std430, binding = 10) writeonly buffer source_triangles { source_triangle source[]; };
 uniform int triangle_count;
 
 vec3 vertex(uint i)
@@ -101,7 +102,8 @@ void main()
     if (plane.z == 0.0) {
         return; // seen edge-on: covers nothing
     }
-    map_triangle t;
+    source_triangle t;
+    t.padding = 0u;
     t.depth_slope = -plane.xy / plane.z;
     t.depth_lo = depth_lo;
     t.depth_hi = depth_hi;
@@ -116,17 +118,20 @@ void main()
         if (!(height > thinnest)) {
             continue;
         }
-        t.edge = edge_to_cut(t);
-        if (t.edge < 0) {
-            emit_ready(t);
-        } else {
-            uint slot = atomicAdd(waiting[0], 1u);
-            if (slot < uint(waiting_list.length())) {
-                waiting_list[slot] = t;
+        uint slot = atomicAdd(sources, 1u);
+        if (slot >= uint(source.length())) {
+            atomicAdd(lost, 1u);
+            continue;
+        }
+        source[slot] = t;
+        waiting_piece piece = waiting_piece(t.p0, t.p1, t.p2, slot, 0);
+        if (asks_for_cut(piece, false)) {
+            uint place = atomicAdd(waiting[0], 1u);
+            if (place < uint(waiting_list.length())) {
+                waiting_list[place] = piece;
             } else {
                 atomicAdd(crowded, 1u);
-                atomicAdd(uncut, 1u);
-                emit_ready(t);
+                asks_for_cut(piece, true);
             }
         }
     }

@@ -1,5 +1,8 @@
+// What becomes of a part of a triangle: it is drawn, or one of its edges is cut.
 #include "lab/triangle_layout.glsl"
 #include "warpshadow/warp.glsl"
+#include "warpshadow/edge_walk.glsl"
+#include "warpshadow/warped_hull.glsl"
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
 
@@ -9,62 +12,84 @@ layout(std430, binding = 6) buffer triangle_counts
     uint instance_count;
     uint first_vertex;
     uint base_instance;
-    uint waiting[2];     // triangles to cut, in either list
+    uint waiting[2];     // pieces to cut, in either list
+    uint sources;        // triangles that are left after clipping
     uint lost;           // triangles for which there was no room
-    uint crowded;        // triangles that could not wait for want of room
-    uint uncut;          // triangles drawn although an edge asked for another cut
+    uint crowded;        // pieces that could not wait for want of room
+    uint uncut;          // pieces drawn although an edge asked for another cut
 };
-layout(std430, binding = 7) writeonly buffer ready_triangles { map_triangle ready[]; };
+layout(std430, binding = 7) writeonly buffer ready_triangles { ready_piece ready[]; };
 
-// Straight edges of the unwarped map are curves in the warped one. An edge is cut when it is long,
-// or when the curve leaves the straight line by more than is allowed at a quarter, a half or three
-// quarters of its length. The answer depends on the edge alone, and not on its direction:
-// triangles on both sides cut it alike.
-uniform float longest;   // edges above this are always cut, in map units
-uniform float shortest;  // edges below this are never cut
-uniform float deviation; // allowed distance of the curve from the line, in map units
+uniform int raster;         // of lab/warped_raster.hpp
+uniform float map_texels;   // along a side
+uniform float longest;      // edges above this are cut without further questions, in map units
+uniform float deviation;    // allowed distance of a warped edge from its chord, in map units
+uniform float excess_floor; // what a hull may cover in vain, in units of the map
+uniform float excess_share; // and that much more per unit of what it holds
 
-bool needs_cut(vec2 a, vec2 b)
-{
-    float edge = distance(a, b);
-    if (edge <= shortest) {
-        return false;
-    }
-    if (edge > longest) {
-        return true;
-    }
-    vec2 from = ws_warp(warp_rows, warp_columns, a);
-    vec2 to = ws_warp(warp_rows, warp_columns, b);
-    vec2 middle = ws_warp(warp_rows, warp_columns, 0.5 * (a + b));
-    if (distance(middle, 0.5 * (from + to)) > deviation) {
-        return true;
-    }
-    // over two cells and less, the middle tells all
-    if (edge * float(WS_TABLE_CELLS(warp_rows)) <= 2.0) {
-        return false;
-    }
-    vec2 near_a = ws_warp(warp_rows, warp_columns, 0.25 * (3.0 * a + b));
-    vec2 near_b = ws_warp(warp_rows, warp_columns, 0.25 * (a + 3.0 * b));
-    return distance(near_a, 0.25 * (3.0 * from + to)) > deviation ||
-           distance(near_b, 0.25 * (from + 3.0 * to)) > deviation;
-}
-
-// Edge to cut: 0 for p0 p1, 1 for p1 p2, 2 for p2 p0, the longest of those that need it; else -1.
-int edge_to_cut(map_triangle t)
-{
-    vec3 edges = vec3(needs_cut(t.p0, t.p1) ? distance(t.p0, t.p1) : 0.0,
-                      needs_cut(t.p1, t.p2) ? distance(t.p1, t.p2) : 0.0,
-                      needs_cut(t.p2, t.p0) ? distance(t.p2, t.p0) : 0.0);
-    float most = max(edges.x, max(edges.y, edges.z));
-    return most == 0.0 ? -1 : most == edges.x ? 0 : most == edges.y ? 1 : 2;
-}
-
-void emit_ready(map_triangle t)
+void emit(vec2 q0, vec2 q1, vec2 q2, uint source)
 {
     uint slot = atomicAdd(vertex_count, 3u) / 3u;
     if (slot < uint(ready.length())) {
-        ready[slot] = t;
+        ready[slot] = ready_piece(q0, q1, q2, source, 0u);
     } else {
         atomicAdd(lost, 1u);
     }
+}
+
+// The answer depends on the edge alone, and not on its direction: triangles on both sides cut alike.
+bool needs_cut(vec2 a, vec2 b)
+{
+    if (distance(a, b) > longest) {
+        return true;
+    }
+    return raster == RASTER_BOUND &&
+           ws_edge_deviation(warp_rows, warp_columns, a, b, deviation) > deviation;
+}
+
+int longest_edge(vec3 lengths)
+{
+    float most = max(lengths.x, max(lengths.y, lengths.z));
+    return most == lengths.x ? 0 : most == lengths.y ? 1 : 2;
+}
+
+// Draws the piece, or names the edge to cut: the longest of those that need it.
+bool asks_for_cut(inout waiting_piece t, bool last)
+{
+    vec3 lengths = vec3(distance(t.p0, t.p1), distance(t.p1, t.p2), distance(t.p2, t.p0));
+    if (raster == RASTER_EXACT) {
+        t.edge = longest_edge(lengths);
+        if (!last && lengths[t.edge] > longest) {
+            return true;
+        }
+        ws_warped_hull hull = ws_hull_of_triangle(warp_rows, warp_columns, t.p0, t.p1, t.p2,
+                                                  0.0625 / map_texels);
+        if (!last && hull.excess > excess_floor + excess_share * (hull.area - hull.excess)) {
+            return true;
+        }
+        // a hull between the centres of texels draws nothing
+        vec2 lo = min(min(hull.corner[0], hull.corner[1]), min(hull.corner[2], hull.corner[3]));
+        vec2 hi = max(max(hull.corner[0], hull.corner[1]), max(hull.corner[2], hull.corner[3]));
+        if (any(lessThan(floor(hi * map_texels - 0.5), ceil(lo * map_texels - 0.5)))) {
+            return false;
+        }
+        emit(hull.corner[0], hull.corner[1], hull.corner[2], t.source);
+        if (hull.corners == 4) {
+            emit(hull.corner[0], hull.corner[2], hull.corner[3], t.source);
+        }
+        return false;
+    }
+    if (raster == RASTER_RULE || raster == RASTER_BOUND) {
+        lengths *= vec3(needs_cut(t.p0, t.p1), needs_cut(t.p1, t.p2), needs_cut(t.p2, t.p0));
+        t.edge = longest_edge(lengths);
+        if (lengths[t.edge] > 0.0) {
+            if (!last) {
+                return true;
+            }
+            atomicAdd(uncut, 1u);
+        }
+    }
+    emit(ws_warp(warp_rows, warp_columns, t.p0), ws_warp(warp_rows, warp_columns, t.p1),
+         ws_warp(warp_rows, warp_columns, t.p2), t.source);
+    return false;
 }

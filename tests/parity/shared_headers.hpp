@@ -14,5 +14,6 @@
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>
 #include <warpshadow/tessellation.hpp>
+#include <warpshadow/warped_hull.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>

@@ -15,6 +15,7 @@
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warped_hull.hpp>
 
 using ivec2 = glm::vec<2, int>;
 using vec2 = glm::vec<2, float>;
@@ -92,6 +93,12 @@ template bool warpshadow::edge_departs<float, float>(const table&, const table&,
                                                      vec2, float);
 template int warpshadow::edge_segments<float>(const table&, vec2, vec2, float, int);
 template float warpshadow::split_deviation<float>(const table&, vec2, vec2, int);
+
+// edge_walk, warped_hull
+template float warpshadow::edge_deviation<float, float>(const table&, const table&, vec2, vec2,
+                                                        float);
+template warpshadow::warped_hull<float>
+warpshadow::hull_of_triangle<float, float>(const table&, const table&, vec2, vec2, vec2, float);
 
 // warp_build
 template float warpshadow::warp_node<float, unsigned>(unsigned, unsigned, int, int, float);

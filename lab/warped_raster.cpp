@@ -1,0 +1,226 @@
+#include "lab/warped_raster.hpp"
+
+#include "lab/truth.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace lab {
+
+namespace {
+
+/// Hulls: edges above this share of the map are cut without a look at where they go.
+constexpr double longest_walk = 0.125;
+/// What a hull may cover in vain before it is cut: texels, and a share of what it holds.
+constexpr double excess_texels = 64.0;
+constexpr double excess_share = 0.5;
+
+/// Halvings of an edge that are enough for all: 2^-20 of the map is less than its rounding.
+constexpr int most_halvings = 20;
+
+constexpr std::size_t source_bytes = 48;
+constexpr std::size_t piece_bytes = 32;
+constexpr std::size_t most_pieces = std::size_t{1} << 23;
+
+/// Buffer bindings of the shaders.
+enum binding : GLuint { on_counts = 6, on_ready = 7, on_waiting = 8, on_next = 9, on_source = 10 };
+
+struct kind_name {
+    std::string_view name;
+    raster_kind kind;
+};
+constexpr std::array kinds{
+    kind_name{"none", raster_kind::none},   kind_name{"fragment", raster_kind::fragment},
+    kind_name{"rule", raster_kind::rule},   kind_name{"bound", raster_kind::bound},
+    kind_name{"exact", raster_kind::exact}, kind_name{"ideal", raster_kind::ideal},
+};
+
+bool has_value(raster_kind kind) {
+    return kind == raster_kind::rule || kind == raster_kind::bound;
+}
+
+} // namespace
+
+raster_choice parse_raster(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view name = std::string_view(text).substr(0, colon);
+    const auto* const found = std::find_if(
+        kinds.begin(), kinds.end(), [&](const kind_name& each) { return each.name == name; });
+    if (found != kinds.end() && has_value(found->kind) == (colon != std::string::npos)) {
+        raster_choice result{found->kind};
+        if (!has_value(found->kind)) {
+            return result;
+        }
+        const char* const end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, result.value);
+        if (error == std::errc() && rest == end && result.value >= 0.1 && result.value <= 100.0) {
+            return result;
+        }
+    }
+    throw bad_input("--raster wants none, fragment, rule:PERCENT, bound:TEXELS (0.1 to 100), exact "
+                    "or ideal, not '" +
+                    text + "'");
+}
+
+std::string raster_name(const raster_choice& choice) {
+    for (const kind_name& each : kinds) {
+        if (each.kind == choice.kind) {
+            char number[32] = "";
+            if (has_value(choice.kind)) {
+                std::snprintf(number, sizeof number, ":%g", choice.value);
+            }
+            return std::string(each.name) + number;
+        }
+    }
+    return {};
+}
+
+warped_raster::warped_raster(passes& gpu)
+    : gpu_(gpu), counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW) {
+    const std::vector<std::string> names{
+        "RASTER_RULE " + std::to_string(static_cast<int>(raster_kind::rule)),
+        "RASTER_BOUND " + std::to_string(static_cast<int>(raster_kind::bound)),
+        "RASTER_EXACT " + std::to_string(static_cast<int>(raster_kind::exact))};
+    set_up_ = gpu_.compute("triangle_setup.comp", names);
+    cut_ = gpu_.compute("triangle_cut.comp", names);
+    draw_interpolated_ = gpu_.link("shadow_warped.vert", "empty.frag", {"INTERPOLATED"});
+    draw_fragment_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag");
+    draw_exact_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag", {"COVERAGE"});
+    const std::size_t triangles = gpu_.world().triangles.size();
+    sources_ =
+        gl::buffer((triangles + triangles / 2 + 1024) * source_bytes, nullptr, GL_DYNAMIC_COPY);
+    set_capacity(2 * triangles + 65536, 65536);
+}
+
+void warped_raster::set_capacity(std::size_t ready, std::size_t waiting) {
+    ready_ = gl::buffer(ready * piece_bytes, nullptr, GL_DYNAMIC_COPY);
+    for (gl::buffer& list : waiting_) {
+        list = gl::buffer(waiting * piece_bytes, nullptr, GL_DYNAMIC_COPY);
+    }
+}
+
+void warped_raster::prepare(std::size_t index, int size, const raster_choice& choice) {
+    const double texels = size;
+    const double longest = choice.kind == raster_kind::rule    ? choice.value / 100.0
+                           : choice.kind == raster_kind::exact ? longest_walk
+                                                               : 2.0;
+    for (const gl::program* program : {&set_up_, &cut_}) {
+        program->set("map_index", static_cast<int>(index));
+        program->set("raster", static_cast<int>(choice.kind));
+        program->set("map_texels", static_cast<float>(texels));
+        program->set("longest", static_cast<float>(longest));
+        program->set("deviation", static_cast<float>(choice.value / texels));
+        program->set("excess_floor", static_cast<float>(excess_texels / (texels * texels)));
+        program->set("excess_share", static_cast<float>(excess_share));
+    }
+}
+
+void warped_raster::draw_map(map_resources& maps, std::size_t index, const raster_choice& choice,
+                             const ray_tracer* rays, bool count) {
+    if (choice.kind == raster_kind::ideal) {
+        if (rays != nullptr) {
+            gpu_.timed_pass("shadow map", [&] { trace_map(maps, index, *rays); });
+        }
+        return;
+    }
+    gpu_.timed_pass("set up triangles", [&] {
+        prepare(index, maps.size, choice);
+        const triangle_counts none;
+        counters_.write(0, sizeof none, &none);
+        gpu_.mesh().positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+        gpu_.mesh().indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+        gpu_.face_normal_buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
+        counters_.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
+        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
+        sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
+        waiting_[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
+        const int triangles = static_cast<int>(gpu_.world().triangles.size());
+        set_up_.set("triangle_count", triangles);
+        set_up_.dispatch(triangles);
+        gl::wait_for_writes();
+    });
+    gpu_.timed_pass("cut triangles", [&] {
+        // three halvings, one of each edge, make a triangle half as large
+        const int rounds = choice.kind < raster_kind::rule ? 0 : 3 * most_halvings;
+        for (int round = 0; round < rounds; ++round) {
+            const std::size_t source = static_cast<std::size_t>(round % 2);
+            const std::uint32_t zero = 0;
+            counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
+                            sizeof zero, &zero);
+            waiting_[source].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
+            waiting_[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
+            cut_.set("list", static_cast<int>(source));
+            cut_.set("last_round", static_cast<int>(round + 1 == rounds));
+            cut_.dispatch(64 * 64);
+            gl::wait_for_writes();
+        }
+    });
+    gpu_.timed_pass("shadow map", [&] {
+        maps.targets[index].bind();
+        glClear(GL_DEPTH_BUFFER_BIT);
+        const gl::program& draw = choice.kind == raster_kind::none    ? draw_interpolated_
+                                  : choice.kind == raster_kind::exact ? draw_exact_
+                                                                      : draw_fragment_;
+        draw.use();
+        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
+        sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
+        nothing_.bind();
+        counters_.bind(GL_DRAW_INDIRECT_BUFFER);
+        glDrawArraysIndirect(GL_TRIANGLES, nullptr);
+        gl::wait_for_writes();
+    });
+    if (count) {
+        counted_.push_back(counters_.read<triangle_counts>().front());
+    }
+}
+
+void warped_raster::trace_map(map_resources& maps, std::size_t index, const ray_tracer& rays) {
+    const glm::dmat4 matrix(gpu_.matrix_in_use(index));
+    const glm::dmat4 inverse = glm::inverse(matrix);
+    const std::vector<glm::vec2> centres = maps.warps[index].centres.read<glm::vec2>();
+    std::vector<glm::dvec3> from(centres.size());
+    std::vector<glm::dvec3> to(centres.size());
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+        const glm::dvec2 ndc = 2.0 * glm::dvec2(centres[i]) - 1.0;
+        const glm::dvec4 nearest = inverse * glm::dvec4(ndc, -1.0, 1.0);
+        const glm::dvec4 farthest = inverse * glm::dvec4(ndc, 1.0, 1.0);
+        from[i] = glm::dvec3(nearest) / nearest.w;
+        to[i] = glm::dvec3(farthest) / farthest.w;
+    }
+    const std::vector<double> hits = rays.first_hits(from, to);
+    std::vector<float> depth(centres.size(), 1.0f);
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+        if (hits[i] <= 1.0) {
+            const glm::dvec4 clip = matrix * glm::dvec4(from[i] + hits[i] * (to[i] - from[i]), 1.0);
+            depth[i] = static_cast<float>(std::clamp(clip.z / clip.w * 0.5 + 0.5, 0.0, 1.0));
+        }
+    }
+    glBindTexture(GL_TEXTURE_2D_ARRAY, maps.depth.id());
+    glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(index), maps.size, maps.size,
+                    1, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+}
+
+bool warped_raster::grow_lists() {
+    const auto any_of = [&](std::uint32_t triangle_counts::*count) {
+        return std::any_of(counted_.begin(), counted_.end(),
+                           [&](const triangle_counts& each) { return each.*count > 0; });
+    };
+    const std::size_t ready = ready_.bytes() / piece_bytes;
+    const std::size_t waiting = waiting_[0].bytes() / piece_bytes;
+    const bool lost = any_of(&triangle_counts::lost);
+    const bool crowded = any_of(&triangle_counts::crowded);
+    if ((!lost && !crowded) || ready > most_pieces || waiting > most_pieces) {
+        return false;
+    }
+    counted_.clear();
+    set_capacity(lost ? 2 * ready : ready, crowded ? 2 * waiting : waiting);
+    return true;
+}
+
+std::size_t warped_raster::list_bytes() const {
+    return sources_.bytes() + ready_.bytes() + waiting_[0].bytes() + waiting_[1].bytes();
+}
+
+} // namespace lab

@@ -1,0 +1,84 @@
+// Shadow maps with warp tables: how triangles get into them.
+#pragma once
+
+#include "lab/passes.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lab {
+
+class ray_tracer;
+
+/// What is done about straight lines that the warp bends; mirrored in shaders/triangles.glsl.
+enum class raster_kind {
+    none = 0,     ///< warped corners, everything between interpolated
+    fragment = 1, ///< the same, with the depth of the unwarped place per fragment
+    rule = 2,     ///< and edges cut down to a share of the map (Rosen 2012, Milet et al. 2015)
+    bound = 3,    ///< and edges cut until they depart by no more than is allowed
+    exact = 4,    ///< hulls of the curved triangles; depth and coverage per fragment
+    ideal = 5     ///< no rasteriser: a ray per texel
+};
+
+/// One of them, with its number.
+struct raster_choice {
+    raster_kind kind = raster_kind::exact;
+    double value = 0.0; ///< rule: per cent of the map; bound: texels
+};
+
+/// The choice that a text such as "rule:2.5" stands for.
+/// @throws bad_input with one line for anything else.
+raster_choice parse_raster(const std::string& text);
+
+/// The text of a choice.
+std::string raster_name(const raster_choice& choice);
+
+/// Mirror of `triangle_counts` in shaders/triangles.glsl.
+struct triangle_counts {
+    std::uint32_t vertex_count = 0;
+    std::uint32_t instance_count = 1;
+    std::uint32_t first_vertex = 0;
+    std::uint32_t base_instance = 0;
+    std::array<std::uint32_t, 2> waiting{};
+    std::uint32_t sources = 0;
+    std::uint32_t lost = 0;
+    std::uint32_t crowded = 0;
+    std::uint32_t uncut = 0;
+};
+
+/// Draws maps with tables.
+class warped_raster {
+  public:
+    explicit warped_raster(passes& gpu);
+
+    /// Draws the scene into one map with its tables; `count` reads back how many triangles.
+    /// @param rays for `raster_kind::ideal`
+    void draw_map(map_resources& maps, std::size_t index, const raster_choice& choice,
+                  const ray_tracer* rays, bool count);
+
+    /// Makes the triangle lists large enough for what was counted since the last call; false if
+    /// they were.
+    bool grow_lists();
+    void forget_counts() { counted_.clear(); }
+    /// Of the maps drawn since they were last forgotten.
+    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
+    [[nodiscard]] std::size_t list_bytes() const;
+
+  private:
+    void set_capacity(std::size_t ready, std::size_t waiting);
+    void prepare(std::size_t index, int size, const raster_choice& choice);
+    void trace_map(map_resources& maps, std::size_t index, const ray_tracer& rays);
+
+    passes& gpu_;
+    gl::buffer counters_, sources_, ready_;
+    std::array<gl::buffer, 2> waiting_;
+    gl::vertex_array nothing_;
+    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_;
+    std::vector<triangle_counts> counted_;
+};
+
+} // namespace lab
