@@ -4,6 +4,7 @@
 #include "lab/method_table.hpp"
 #include "lab/plot.hpp"
 #include "lab/report.hpp"
+#include "lab/vpl.hpp"
 
 #include <array>
 #include <cmath>
@@ -93,13 +94,20 @@ std::optional<double> mean_light_error(const g_buffer_samples& samples,
 } // namespace
 
 figure_defaults defaults_of_figure(const std::string& name) {
+    if (is_vpl(name)) {
+        points_of_vpl(name);
+        return defaults_of_vpl();
+    }
     if (name != "figure6" && name != "figure8") {
-        throw bad_input("--preset wants figure6 or figure8, not '" + name + "'");
+        throw bad_input("--preset wants figure6, figure8 or vpl, not '" + name + "'");
     }
     return {"outdoor", "0", "0", name == "figure6" ? 2048 : 1024, {512, 512}};
 }
 
 std::size_t runs_of_figure(const std::string& name) {
+    if (is_vpl(name)) {
+        return runs_of_vpl();
+    }
     return plan_of(name).size();
 }
 

@@ -27,7 +27,7 @@ struct figure_defaults {
     glm::ivec2 view;
 };
 
-/// @throws bad_input for anything but figure6 and figure8.
+/// @throws bad_input for anything but figure6, figure8 and the presets of lab/vpl.hpp.
 figure_defaults defaults_of_figure(const std::string& name);
 
 /// How many runs a figure takes.

@@ -17,6 +17,7 @@
 #include "lab/scene.hpp"
 #include "lab/statistics.hpp"
 #include "lab/truth.hpp"
+#include "lab/vpl.hpp"
 
 #include <epoxy/gl.h>
 
@@ -348,7 +349,9 @@ void run_lab(const lab::options& wanted) {
             view_runner runner(wanted, all, folder, progress);
             for (const lab::camera_view& camera : work.cameras) {
                 for (const lab::light_view& light : work.lights) {
-                    if (!wanted.preset.empty()) {
+                    if (lab::is_vpl(wanted.preset)) {
+                        lab::run_vpl(wanted, work.world, all, progress);
+                    } else if (!wanted.preset.empty()) {
                         figures.push_back(lab::run_figure(wanted, work.world, renderer, rays,
                                                           camera, light, all, folder, progress));
                     } else if (wanted.path.empty()) {
@@ -365,6 +368,9 @@ void run_lab(const lab::options& wanted) {
         std::vector<std::string> sections;
         for (const lab::figure_pictures& each : figures) {
             sections.push_back(lab::figure_section(all, each));
+        }
+        for (std::size_t i = 0; i < all.vpls.size(); ++i) {
+            sections.push_back(lab::vpl_section(all, i));
         }
         folder.write("report.html", lab::html_of(all, views, paths, sections));
     }

@@ -20,13 +20,14 @@ constexpr std::array methods{
     method{.name = "min-sm-notw", .base = map_base::minimal, .warp = true},
     method{.name = "lispsm-notw", .base = map_base::lispsm, .desired_view = true, .warp = true},
     method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
-    method{.name = "notw", .desired_view = true, .warp = true},
+    method{.name = "notw", .desired_view = true, .warp = true, .for_points = "cube-notw"},
     method{.name = "notw-nodv", .warp = true},
     method{.name = "cube6", .base = map_base::all_around},
     method{.name = "cube6-cull", .base = map_base::all_around, .omni = {.cull_objects = true}},
     method{.name = "cube6-efc",
            .base = map_base::all_around,
            .omni = {.cull_maps = true, .cull_objects = true}},
+    method{.name = "cube6-gs", .base = map_base::all_around, .omni = {.layered = true}},
     method{.name = "cube6-cull-gs",
            .base = map_base::all_around,
            .omni = {.cull_objects = true, .layered = true}},
@@ -40,11 +41,25 @@ constexpr std::array methods{
     method{.name = "dpsm-pc",
            .base = map_base::all_around,
            .omni = {.hemispheres = true, .cull_maps = true, .cull_objects = true}},
+    method{.name = "dpsm-gs",
+           .base = map_base::all_around,
+           .omni = {.hemispheres = true, .layered = true}},
+    method{.name = "dpsm-cull-gs",
+           .base = map_base::all_around,
+           .omni = {.hemispheres = true, .cull_objects = true, .layered = true}},
+    method{.name = "dpsm-pc-gs",
+           .base = map_base::all_around,
+           .omni = {.hemispheres = true, .cull_maps = true, .cull_objects = true, .layered = true}},
     method{.name = "cube-notw",
            .base = map_base::all_around,
            .desired_view = true,
            .warp = true,
            .omni = {.cull_maps = true}},
+    method{.name = "dpsm-notw",
+           .base = map_base::all_around,
+           .desired_view = true,
+           .warp = true,
+           .omni = {.hemispheres = true, .cull_maps = true}},
 };
 
 constexpr auto names = [] {
@@ -90,8 +105,8 @@ std::optional<std::string> why_not(std::string_view name, const light_view& ligh
     if (how.base == map_base::all_around && light.light.kind != ws::light_kind::point) {
         return "faces of a cube and paraboloids are for a light that shines all around";
     }
-    if (name == "notw" && light.light.kind == ws::light_kind::point) {
-        return "for the faces of a point light's cube it is called cube-notw";
+    if (!how.for_points.empty() && light.light.kind == ws::light_kind::point) {
+        return "for a point light it is called " + std::string(how.for_points);
     }
     if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
         return "a texel of a fixed size has no meaning for a light with a position";

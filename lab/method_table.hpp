@@ -25,11 +25,12 @@ enum class map_base {
 struct method {
     std::string_view name;
     map_base base = map_base::whole_scene;
-    int partitions = 1;        ///< maps by view depth
-    bool desired_view = false; ///< crop to the lit view samples
-    bool fitted = false;       ///< projective warp fitted to the lit view samples
-    bool warp = false;         ///< tables, and triangles cut for them
-    omni_way omni = {};        ///< of maps all around
+    int partitions = 1;               ///< maps by view depth
+    bool desired_view = false;        ///< crop to the lit view samples
+    bool fitted = false;              ///< projective warp fitted to the lit view samples
+    bool warp = false;                ///< tables, and triangles cut for them
+    omni_way omni = {};               ///< of maps all around
+    std::string_view for_points = {}; ///< the method that does this for point lights, if not this
 };
 
 /// All method names, "raytraced" last.

@@ -100,7 +100,7 @@ struct renderer::state {
             }
             if (how.warp) {
                 gpu.build_tables(maps, i, count);
-                warped.draw_map(maps, i, request.raster, request.rays, count);
+                draw_warped(how, request, maps, i, count);
             } else {
                 gpu.timed_pass("shadow map", [&] {
                     if (request.bias) {
@@ -121,11 +121,35 @@ struct renderer::state {
         return chosen;
     }
 
+    void draw_warped(const method& how, const view_request& request, map_resources& maps,
+                     std::size_t index, bool count) {
+        if (how.omni.hemispheres) {
+            omni.draw_warped(maps, index, request.light, count);
+        } else {
+            warped.draw_map(maps, index, request.raster, request.rays, count);
+        }
+    }
+
+    /// Makes the lists of cut triangles long enough; false if they were.
+    bool grow_lists(const method& how) {
+        return how.warp &&
+               (how.omni.hemispheres ? omni.raster().grow_lists() : warped.grow_lists());
+    }
+
+    void forget_counts() {
+        warped.forget_counts();
+        omni.raster().forget_counts();
+    }
+
+    const std::vector<triangle_counts>& counted(const method& how) const {
+        return how.omni.hemispheres ? omni.raster().counted() : warped.counted();
+    }
+
     /// Shadow test of the samples in use.
     void test(const method& how, const light_view& light, map_resources& maps,
               const light_maps& chosen) {
         if (how.omni.hemispheres) {
-            omni.test_hemispheres(maps, light);
+            omni.test_hemispheres(maps, chosen, light, how.warp);
         } else {
             gpu.test_shadows(maps, chosen, how.warp);
         }
@@ -168,7 +192,7 @@ struct renderer::state {
                 flags |= ws::status::empty_importance;
             }
         }
-        for (const triangle_counts& each : warped.counted()) {
+        for (const triangle_counts& each : counted(how)) {
             flags |= each.lost > 0 ? ws::status::capacity_reached : ws::status::ok;
             flags |= each.uncut > 0 ? ws::status::bound_missed : ws::status::ok;
         }
@@ -296,9 +320,9 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     s.culling_us.clear();
     // the first frame warms up and, with tables, finds how long the lists must be
     do {
-        s.warped.forget_counts();
+        s.forget_counts();
         frame(true);
-    } while (how.warp && s.warped.grow_lists());
+    } while (s.grow_lists(how));
     glFinish();
 
     std::vector<double> frames;
@@ -335,13 +359,16 @@ method_result renderer::run(std::string_view name, const view_request& request) 
                                       request.filter, s.seen,
                                       camera_frustum(s.gpu.world(), request.camera, s.gpu.view()));
     }
-    result.bytes = maps.bytes() + (how.warp ? s.warped.list_bytes() : 0);
+    result.bytes = maps.bytes();
+    if (how.warp) {
+        result.bytes += how.omni.hemispheres ? s.omni.raster().list_bytes() : s.warped.list_bytes();
+    }
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;
     result.triangles = s.gpu.world().triangles.size() * static_cast<std::size_t>(result.maps);
     if (how.warp) {
         result.triangles = 0;
-        for (const triangle_counts& each : s.warped.counted()) {
+        for (const triangle_counts& each : s.counted(how)) {
             result.triangles += each.vertex_count / 3;
         }
     }
@@ -393,11 +420,11 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     light_maps chosen;
     do {
         memory.light = before;
-        s.warped.forget_counts();
+        s.forget_counts();
         s.gpu.watch().start();
         chosen = s.frame(how, request, memory.light, maps, true);
         result.frame_ms = s.gpu.watch().stop();
-    } while (how.warp && s.warped.grow_lists());
+    } while (s.grow_lists(how));
     result.shadowed = s.gpu.shadowed();
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;

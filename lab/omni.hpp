@@ -4,6 +4,7 @@
 #include "lab/light_maps.hpp"
 #include "lab/objects.hpp"
 #include "lab/omni_mesh.hpp"
+#include "lab/omni_raster.hpp"
 #include "lab/passes.hpp"
 #include "lab/scene.hpp"
 
@@ -22,7 +23,7 @@ struct omni_way {
     bool hemispheres = false;  ///< two paraboloids instead of six faces
     bool cull_maps = false;    ///< leave out faces or hemispheres that no view meets
     bool cull_objects = false; ///< draw each object only where the light may see it
-    bool layered = false;      ///< one pass, a geometry shader sends triangles to the faces
+    bool layered = false;      ///< one pass, a geometry shader sends triangles to the maps
 };
 
 /// The axis of the front hemisphere in the world, of all lights.
@@ -41,10 +42,16 @@ class omni_passes {
     /// Draws the maps in use. Expects `passes::use` to have been called for this light.
     void draw(map_resources& maps, light_maps& chosen, const light_view& light,
               const omni_way& way);
+    /// Draws a hemisphere's map with tables, after these were built. `count` as in
+    /// `hemisphere_raster::draw`.
+    void draw_warped(map_resources& maps, std::size_t side, const light_view& light, bool count);
     /// Shadow test of all samples in use; for faces of a cube see `passes::test_shadows`.
-    void test_hemispheres(const map_resources& maps, const light_view& light);
+    void test_hemispheres(const map_resources& maps, const light_maps& chosen,
+                          const light_view& light, bool warped);
 
     [[nodiscard]] const scene_objects& objects() const { return objects_; }
+    [[nodiscard]] hemisphere_raster& raster() { return raster_; }
+    [[nodiscard]] const hemisphere_raster& raster() const { return raster_; }
     /// Triangles given to the device by the last `draw`, once per map or, layered, once in all.
     [[nodiscard]] std::size_t triangles() const { return triangles_; }
     /// Microseconds that the last `draw` spent on sorting objects to maps.
@@ -71,14 +78,23 @@ class omni_passes {
     void sort_objects(const light_maps& chosen, const light_view& light, const omni_way& way,
                       int map_size);
     void draw_faces(map_resources& maps, const light_maps& chosen);
-    void draw_layers(map_resources& maps);
+    /// The objects of these ranges that a map wants, for one indirect draw of all layers.
+    void write_masks(const std::vector<triangle_range>& ranges, bool indexed);
+    /// Points an attribute of the vertex array in use to the masks, one per object.
+    void bind_masks(GLuint index) const;
+    void draw_face_layers(map_resources& maps);
     void draw_hemispheres(map_resources& maps, const light_maps& chosen, const cut_scene& scene);
+    static void set_frame(const gl::program& program, const map_resources& maps,
+                          const cut_scene& scene);
+    void draw_hemisphere_layers(map_resources& maps, const cut_scene& scene);
     /// Ranges of the objects that go to a map, joined where they touch.
     void collect(const std::vector<triangle_range>& ranges, std::size_t map);
 
     passes& gpu_;
     scene_objects objects_;
-    gl::program draw_face_, draw_layers_, draw_hemisphere_, test_hemispheres_;
+    hemisphere_raster raster_;
+    gl::program draw_face_, draw_layers_, draw_hemisphere_, draw_halves_, test_hemispheres_,
+        test_warped_;
     gl::buffer indices_, masks_on_device_, commands_;
     gl::vertex_array array_;
     std::map<int, cut_scene> cut_scenes_; ///< by the size of their maps
@@ -87,6 +103,7 @@ class omni_passes {
     std::vector<GLsizei> counts_;
     std::vector<GLint> firsts_;
     std::vector<const void*> offsets_;
+    GLsizei commands_in_use_ = 0;
     std::size_t triangles_ = 0;
     double culling_us_ = 0.0;
     double cutting_ms_ = 0.0;

@@ -43,6 +43,8 @@ Figures (--preset), over a scene, camera and light of your choice:
             hyperbolic and linear depth and with back faces, for lispsm, fitted and sm
   figure8   blur of the shadows in the picture (figure 8): 0 to 16 iterations, the same everywhere
             and less with depth, for sm and lispsm
+  vpl       shadow maps of virtual lights on the surfaces (Navratil 2012, figure 13), the scene as a
+            cloud of 100000 points, or with vpl:POINTS of so many; cubes against paraboloids
 
 Paths (--path), all with nothing but the camera in motion:
   yaw       turns on the spot, 0.1 degrees a frame
@@ -190,9 +192,11 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     const auto list = [&](const char* name, std::vector<std::string>& to, const char* about) {
         app.add_option(name, to, about)->allow_extra_args(false);
     };
-    list("--scene", scenes,
-         "Built-in scene or .obj, .gltf, .glb file; comma-separated or repeated "
-         "(outdoor,interior)");
+    list(
+        "--scene", scenes,
+        "Built-in scene or .obj, .gltf, .glb file; comma-separated or repeated; a built-in one may "
+        "be "
+        "NAME:CORNERS, its triangles cut until they have about so many corners (outdoor,interior)");
     app.add_flag("--list-scenes", result.list_scenes, "Print the built-in scenes and their views");
     list("--camera", cameras, "Camera, may be repeated (0)");
     list("--light", lights, "Light, may be repeated (0)");
@@ -206,7 +210,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
                    "the picture); wrong pixels are counted without (none)");
     list("--raster", rasters,
          "Comma-separated ways to draw maps with tables, to compare (exact); see below");
-    app.add_option("--preset", result.preset, "Redo a figure of Scherzer 2005: figure6 or figure8");
+    app.add_option("--preset", result.preset,
+                   "Redo a figure of a paper: figure6, figure8, vpl or vpl:POINTS");
     app.add_option("--path", result.path,
                    "Move the camera and follow every frame: yaw, forward, strafe, orbit, walk or a "
                    "file");

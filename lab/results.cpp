@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace lab {
 namespace {
@@ -141,6 +142,19 @@ ordered_json json_of_figure(const figure_record& figure) {
     return json;
 }
 
+ordered_json json_of_vpl(const vpl_record& vpl) {
+    ordered_json json;
+    json["scene"] = vpl.scene;
+    json["points"] = vpl.points;
+    json["groups"] = vpl.groups;
+    json["map"] = vpl.map;
+    json["ways"] = ordered_json::array();
+    for (const vpl_record::way_record& way : vpl.ways) {
+        json["ways"].push_back({{"way", way.way}, {"ms", way.ms}, {"maps", way.maps}});
+    }
+    return json;
+}
+
 bool any_bias(const results& all) {
     return std::any_of(all.runs.begin(), all.runs.end(),
                        [](const run_record& run) { return run.bias.has_value(); });
@@ -186,6 +200,9 @@ std::string json_of(const results& all) {
         for (const figure_record& figure : all.figures) {
             json["figures"].push_back(json_of_figure(figure));
         }
+    }
+    for (const vpl_record& vpl : all.vpls) {
+        json["vpl"].push_back(json_of_vpl(vpl));
     }
     json["not_applicable"] = ordered_json::array();
     for (const not_applicable& each : all.left_out) {
@@ -315,6 +332,21 @@ std::string table_of(const results& all) {
                             number(means.maps, "%.1f")});
         }
         text += aligned(rows, 5);
+    }
+    if (!all.vpls.empty()) {
+        rows = {{"scene", "method", "points", "map", "lights", "maps a light", "ms"}};
+        for (const vpl_record& vpl : all.vpls) {
+            for (const vpl_record::way_record& way : vpl.ways) {
+                const double lights = static_cast<double>(way.ms.size());
+                char maps[32];
+                std::snprintf(maps, sizeof maps, "%.1f",
+                              std::accumulate(way.maps.begin(), way.maps.end(), 0.0) / lights);
+                rows.push_back({vpl.scene, way.way, std::to_string(vpl.points),
+                                std::to_string(vpl.map), std::to_string(way.ms.size()), maps,
+                                ms_text(std::accumulate(way.ms.begin(), way.ms.end(), 0.0))});
+            }
+        }
+        text += aligned(rows, 2);
     }
     for (const std::string& line : left_out_lines(all)) {
         text += "not applicable: " + line + "\n";

@@ -46,6 +46,21 @@ struct figure_record {
     std::vector<cell> cells;
 };
 
+/// Shadow maps of virtual point lights, one light after the other.
+struct vpl_record {
+    std::string scene;
+    std::size_t points;
+    std::size_t groups; ///< of points, culled as one
+    int map;
+    /// One way to draw them; per light.
+    struct way_record {
+        std::string way;
+        std::vector<double> ms;
+        std::vector<int> maps;
+    };
+    std::vector<way_record> ways;
+};
+
 /// A method that was asked for and cannot do the light.
 struct not_applicable {
     std::string scene;
@@ -64,6 +79,7 @@ struct results {
     std::vector<path_record> paths;
     std::vector<not_applicable> left_out;
     std::vector<figure_record> figures;
+    std::vector<vpl_record> vpls;
 };
 
 /// The text of results.json, schema 1.

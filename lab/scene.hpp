@@ -75,7 +75,8 @@ scene build_scene(std::string_view name, unsigned seed);
 /// not finite.
 scene load_scene(const std::string& path);
 
-/// `build_scene` for a built-in name, `load_scene` for anything else.
+/// `build_scene` for a built-in name, for NAME:CORNERS the same with more triangles (see
+/// lab/scene_detail.hpp), `load_scene` for anything else.
 scene open_scene(const std::string& name_or_path, unsigned seed);
 
 } // namespace lab

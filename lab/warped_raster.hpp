@@ -37,7 +37,7 @@ raster_choice parse_raster(const std::string& text);
 /// The text of a choice.
 std::string raster_name(const raster_choice& choice);
 
-/// Mirror of `triangle_counts` in shaders/triangles.glsl.
+/// Mirror of `triangle_counts` in shaders/triangle_counts.glsl.
 struct triangle_counts {
     std::uint32_t vertex_count = 0;
     std::uint32_t instance_count = 1;

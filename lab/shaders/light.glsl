@@ -14,7 +14,8 @@ layout(std430, binding = 4) buffer light_buffer
     vec4 light_position; // xyz and w = 1, or the direction towards the sun and w = 0
     vec4 light_axis;     // xyz the spot's axis, w the cosine of half its angle; others (0, 0, 0, -2)
     ivec4 light_choice;  // x: map_choice, y: number of maps
-    vec4 depth_plane;    // view depth of a world position is dot(plane, vec4(p, 1))
+    vec4 depth_plane;    // view depth of a world position is dot(plane, vec4(p, 1)); of hemispheres
+                         // the axis of the front
     vec4 splits[2];      // view depths at which the next map begins
     light_map light_maps[];
 };
@@ -37,11 +38,22 @@ float lit_cosine(vec3 world, vec3 normal)
     return dot(-l, light_axis.xyz) >= light_axis.w ? dot(normal, l) : 0.0;
 }
 
+// What the matrices take. With its distance d as a fourth coordinate, a place relative to the light
+// has the paraboloid projection (x, y) / (d + s z), which is that of a matrix: it crops like one.
+vec4 light_coordinates(vec3 world)
+{
+    vec3 p = world - light_position.xyz;
+    return light_choice.x == 3 ? vec4(p, length(p)) : vec4(world, 1.0);
+}
+
 // The map in which a point is looked up.
 int map_of(vec3 world)
 {
     if (light_choice.x == 1) {
         return max(ws_cube_lookup(world - light_position.xyz).face, 0);
+    }
+    if (light_choice.x == 3) {
+        return dot(depth_plane.xyz, world - light_position.xyz) >= 0.0 ? 0 : 1;
     }
     int map = 0;
     if (light_choice.x == 2) {

@@ -1,4 +1,5 @@
 // What becomes of a part of a triangle: it is drawn, or one of its edges is cut.
+#include "lab/triangle_counts.glsl"
 #include "lab/triangle_layout.glsl"
 #include "warpshadow/warp.glsl"
 #include "warpshadow/edge_walk.glsl"
@@ -6,18 +7,6 @@
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
 
-layout(std430, binding = 6) buffer triangle_counts
-{
-    uint vertex_count;   // of the triangles to draw: the first word of an indirect draw
-    uint instance_count;
-    uint first_vertex;
-    uint base_instance;
-    uint waiting[2];     // pieces to cut, in either list
-    uint sources;        // triangles that are left after clipping
-    uint lost;           // triangles for which there was no room
-    uint crowded;        // pieces that could not wait for want of room
-    uint uncut;          // pieces drawn although an edge asked for another cut
-};
 layout(std430, binding = 7) writeonly buffer ready_triangles { ready_piece ready[]; };
 
 uniform int raster;         // of lab/warped_raster.hpp

@@ -15,7 +15,7 @@ bool lit_sample(ivec2 pixel, mat4 clip_from_world, out vec2 p)
         lit_cosine(world.xyz, texelFetch(g_normal, pixel, 0).xyz) <= 0.0) {
         return false;
     }
-    vec4 clip = clip_from_world * vec4(world.xyz, 1.0);
+    vec4 clip = clip_from_world * light_coordinates(world.xyz);
     p = clip.xy / clip.w * 0.5 + 0.5;
     return clip.w > 0.0;
 }

@@ -15,8 +15,9 @@ from pathlib import Path
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
 METHODS = ["sm", "stable", "min-sm", "dv", "lispsm", "fitted", "fitted-2", "min-sm-notw",
            "lispsm-notw", "fitted-notw", "notw", "notw-nodv"]
-FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-cull-gs", "cube6-efc-gs", "dpsm",
-                    "dpsm-cull", "dpsm-pc", "cube-notw"]
+FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-gs", "cube6-efc-gs",
+                    "dpsm", "dpsm-cull", "dpsm-pc", "dpsm-gs", "dpsm-cull-gs", "dpsm-pc-gs",
+                    "cube-notw", "dpsm-notw"]
 NOT_FOR_POINTS = ["sm", "stable", "fitted-2", "notw", "notw-nodv"]
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
@@ -180,8 +181,9 @@ def check_spot_and_point():
     by_name = {r["method"]: r for r in point["runs"]}
     # culling leaves out what no pixel asks for
     for plain, culled in (("cube6", "cube6-cull"), ("cube6", "cube6-efc"), ("dpsm", "dpsm-cull"),
-                          ("cube6", "cube6-cull-gs"), ("cube6", "cube6-efc-gs"),
-                          ("dpsm", "dpsm-pc")):
+                          ("cube6", "cube6-gs"), ("cube6", "cube6-cull-gs"),
+                          ("cube6", "cube6-efc-gs"), ("dpsm", "dpsm-pc"), ("dpsm", "dpsm-gs"),
+                          ("dpsm", "dpsm-cull-gs"), ("dpsm", "dpsm-pc-gs")):
         assert (by_name[plain]["wrong_pixel_ratio"] == by_name[culled]["wrong_pixel_ratio"]), culled
     # the lamp hangs in front of the camera: all six faces may be needed
     assert by_name["dv"]["maps"] == 6 and by_name["dv"]["bytes"] >= 6 * 4 * 64 * 64
