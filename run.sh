@@ -19,6 +19,7 @@ usage: ./run.sh [--no-install] [-j N] COMMAND
   docs       build the reference in build/docs
   first-light  measure again what the first block of README.md shows, and write it
   figures    measure again what docs/bias.md shows of Scherzer's figures, and write it
+  geometry   measure again what docs/geometry.md shows, and write it; wants an idle machine
   help       this text
 
   --no-install   never install a Debian package; say which are missing instead
@@ -266,6 +267,30 @@ command_figures() {
     python3 "$folder/write_page.py"
 }
 
+command_geometry() {
+    need build lab samples test bench
+    local folder=$root/docs/geometry out=$root/build/geometry name
+    local bench=$root/build/release/bench
+    mkdir -p "$out"
+    (cd "$root" && cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON) >/dev/null
+    for name in geometry_failures geometry_fits geometry_bench geometry_bench_native; do
+        printf 'building %s ...\n' "$name"
+        release "bench_$name"
+    done
+    "$bench/geometry_fits" "$folder/fits.json" "$folder/fit.svg"
+    printf 'counting failures ...\n'
+    WARPSHADOW_SETS=400 "$bench/geometry_failures" "$out/failures.md" "$folder/failures.json"
+    for name in geometry_bench geometry_bench_native; do
+        printf 'timing %s ...\n' "$name"
+        "$bench/$name" --benchmark_enable_random_interleaving=true --benchmark_repetitions=15 \
+            --benchmark_min_time=0.02 --benchmark_out="$out/$name.json" >/dev/null
+    done
+    python3 "$folder/collect.py" speed "$out/geometry_bench.json" "$out/geometry_bench_native.json"
+    lab --methods sm,stable,min-sm,dv --out "$out"
+    python3 "$folder/collect.py" frames "$out/results.json"
+    python3 "$folder/write_page.py"
+}
+
 command_help() {
     usage
 }
@@ -291,6 +316,7 @@ while (($#)); do
         break
         ;;
     demo | test | nightly | docs | first-light | figures | help) command=$1 ;;
+    geometry) command=$1 ;;
     *) die "unknown argument $1 (./run.sh help)" ;;
     esac
     shift

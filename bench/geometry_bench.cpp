@@ -36,12 +36,28 @@
 #include <iterator>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace {
 
 using geometry_inputs::point_set;
 using geometry_inputs::scene;
+
+// What built it, for the results
+// -------------------------------------------------------------------
+
+#if defined(__clang__)
+constexpr const char* compiler = __VERSION__;
+#else
+constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+
+[[maybe_unused]] const bool context_known = [] {
+    benchmark::AddCustomContext("compiler", compiler);
+    benchmark::AddCustomContext("lanes", std::to_string(warpshadow::detail::native_lanes));
+    return true;
+}();
 
 // Inputs -----------------------------------------------------------------------------------------
 

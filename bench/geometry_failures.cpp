@@ -22,16 +22,19 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/convex_hull_2.h>
 #include <CGAL/min_quadrilateral_2.h>
+#include <CGAL/version.h>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/multi_point.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
+#include <boost/version.hpp>
 #include <geos/algorithm/MinimumDiameter.h>
 #include <geos/geom/Coordinate.h>
 #include <geos/geom/CoordinateSequence.h>
 #include <geos/geom/Geometry.h>
 #include <geos/geom/GeometryFactory.h>
 #include <geos/geom/MultiPoint.h>
+#include <geos/version.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -390,7 +393,7 @@ std::string cell(const counts& c) {
 
 /// Writes one table and adds its numbers to the JSON; returns the failures of the first candidate.
 template <typename T>
-std::uint64_t table(std::ostream& out, nlohmann::json& json, const std::string& title,
+std::uint64_t table(std::ostream& out, nlohmann::ordered_json& json, const std::string& title,
                     const std::vector<candidate<T>>& candidates, std::uint64_t sets) {
     out << "\n## " << title << "\n\n| class (sets) |";
     for (const auto& c : candidates) {
@@ -407,9 +410,11 @@ std::uint64_t table(std::ostream& out, nlohmann::json& json, const std::string& 
         out << "| " << kind.name << " (" << count << ") |";
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             const counts c = candidates[i].run(kind, count);
-            nlohmann::json& entry = json[title][std::string(kind.name)][candidates[i].name];
+            nlohmann::ordered_json& entry = json[title][std::string(kind.name)][candidates[i].name];
             for (std::size_t v = 0; v < verdicts; ++v) {
-                entry[verdict_names[v]] = c[v];
+                if (c[v] != 0) {
+                    entry[verdict_names[v]] = c[v];
+                }
                 failures[i] += v == passed ? 0 : c[v];
             }
             out << ' ' << cell(c) << " |";
@@ -431,9 +436,11 @@ template <typename T> std::vector<candidate<T>> rectangle_candidates() {
     if constexpr (sizeof(T) == 4) {
         result.push_back(make_candidate<T>("OpenCV " CV_VERSION, opencv_rectangle));
     }
-    result.push_back(make_candidate<T>("CGAL, exact predicates", cgal_rectangle<epick, T>));
-    result.push_back(make_candidate<T>("CGAL, double", cgal_rectangle<cartesian, T>));
-    result.push_back(make_candidate<T>("GEOS", geos_rectangle<T>));
+    result.push_back(
+        make_candidate<T>("CGAL " CGAL_VERSION_STR ", exact predicates", cgal_rectangle<epick, T>));
+    result.push_back(
+        make_candidate<T>("CGAL " CGAL_VERSION_STR ", double", cgal_rectangle<cartesian, T>));
+    result.push_back(make_candidate<T>("GEOS " GEOS_VERSION, geos_rectangle<T>));
     return result;
 }
 
@@ -444,10 +451,12 @@ template <typename T> std::vector<candidate<T>> hull_candidates() {
     if constexpr (sizeof(T) == 4) {
         result.push_back(make_candidate<T>("OpenCV " CV_VERSION, opencv_hull));
     }
-    result.push_back(make_candidate<T>("CGAL, exact predicates", cgal_hull<epick, T>));
-    result.push_back(make_candidate<T>("CGAL, double", cgal_hull<cartesian, T>));
-    result.push_back(make_candidate<T>("GEOS", geos_hull<T>));
-    result.push_back(make_candidate<T>("Boost", boost_hull<T>));
+    result.push_back(
+        make_candidate<T>("CGAL " CGAL_VERSION_STR ", exact predicates", cgal_hull<epick, T>));
+    result.push_back(
+        make_candidate<T>("CGAL " CGAL_VERSION_STR ", double", cgal_hull<cartesian, T>));
+    result.push_back(make_candidate<T>("GEOS " GEOS_VERSION, geos_hull<T>));
+    result.push_back(make_candidate<T>("Boost " BOOST_LIB_VERSION, boost_hull<T>));
     return result;
 }
 
@@ -462,7 +471,7 @@ int main(int argc, char** argv) {
         file.open(argv[1]);
     }
     std::ostream& out = argc > 1 ? file : std::cout;
-    nlohmann::json json;
+    nlohmann::ordered_json json;
     out << "# Failures on hard point sets\n\nOf each class the number of sets that failed, and "
            "how. "
            "How they are judged: bench/geometry_failures.cpp.\n";
