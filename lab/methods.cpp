@@ -94,7 +94,8 @@ struct renderer::state {
                 gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
             }
             if (how.fitted) {
-                gpu.timed_pass("fit", [&] { fit(i, memory.bends[i], chosen.flags); });
+                gpu.timed_pass("fit",
+                               [&] { fit(request.light.light.kind, i, memory.bends[i], chosen); });
                 // the fit knows the samples to a cell of its histogram; the crop knows them exactly
                 gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
             }
@@ -169,7 +170,8 @@ struct renderer::state {
     }
 
     /// Fits a projective warp to the lit samples of one map.
-    void fit(std::size_t index, ws::projective_state<double>& bend, ws::status& flags) {
+    void fit(ws::light_kind kind, std::size_t index, ws::projective_state<double>& bend,
+             light_maps& chosen) {
         const std::vector<std::uint32_t> counts = gpu.histogram(index, histogram_cells);
         const auto begin = std::chrono::steady_clock::now();
         const ws::projective_result<double> fitted = ws::fit_projective<double>(
@@ -178,8 +180,10 @@ struct renderer::state {
             std::chrono::steady_clock::now() - begin;
         fit_us.push_back(elapsed.count());
         bend = fitted.state;
-        flags |= fitted.flags;
-        gpu.warp_map(index, ws::projective_matrix(fitted.map, ws::clip::opengl));
+        chosen.flags |= fitted.flags;
+        gpu.warp_map(index, ws::projective_matrix(fitted.map, ws::clip::opengl, kind));
+        const auto centre = ws::projective_depth<double>(kind, ws::clip::opengl);
+        chosen.maps[index].linear = {1.0, centre, centre};
     }
 
     /// Guards of all steps of the last frame.

@@ -242,8 +242,8 @@ template <typename T> T back_face_bias(T footprint, T thickness) {
 /// Per fragment it is exact: write it as the depth.
 /// @param depth NDC depth z / w of the fragment
 /// @param w     the warp's w: clip w, for a light with a position over the light's own w
-/// @param warp  `depth_scale`, `depth_shift` and `depth_centre` of a `lispsm_result`; (1, 0, 0)
-///              for `projective_matrix`; the scale is not 0
+/// @param warp  `depth_scale`, `depth_shift` and `depth_centre` of a `lispsm_result`; for
+///              `projective_matrix` (1, c, c) with c of `projective_depth`; the scale is not 0
 template <typename T> T linear_depth(T depth, T w, glm::vec<3, T> warp) {
     return (depth - warp.y) * w / warp.x + warp.z;
 }

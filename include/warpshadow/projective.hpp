@@ -15,6 +15,7 @@
 #include <warpshadow/detail/bent_map.hpp>
 #include <warpshadow/detail/finite.hpp>
 #include <warpshadow/importance.hpp>
+#include <warpshadow/light.hpp>
 #include <warpshadow/status.hpp>
 
 #include <glm/mat3x3.hpp>
@@ -222,20 +223,34 @@ projective_result<T> fit_projective(std::span<const glm::vec<2, T>> samples,
     return result;
 }
 
+/// NDC depth that `projective_matrix` leaves where it is, and towards which it draws all others.
+///
+/// For a light with a position the far plane: its depths crowd there, and what they keep between
+/// them is their distance to it. A warp towards any other depth would bury that under the change of
+/// w: receivers would become steep, and want far more bias than a caster is away. For sunlight the
+/// middle of the range.
+template <typename T> constexpr T projective_depth(light_kind kind, clip_space clip) {
+    const T farthest = far_depth<T>(clip);
+    return kind == light_kind::directional ? T(0.5) * (near_depth<T>(clip) + farthest) : farthest;
+}
+
 /// The fitted warp as a matrix to be multiplied from the left to the light's matrix.
 ///
 /// `map`: of a `projective_result`.
 /// `clip`: the convention of the light's matrix.
+/// `kind`: of the light; a point light's faces are of its kind too.
 ///
-/// The light's clip z is left alone, and clip w becomes w(p) ≥ 1 times what it was over the domain
-/// and its reach: z / w stays monotone along every light ray and inside the depth range, for
-/// orthographic and perspective lights, reversed or not. Where w is large depths crowd together
-/// towards z = 0 by that factor; the footprint bias knows. The light's own depth is z / w times
-/// the factor, see `linear_depth`.
+/// Clip w becomes w(p) ≥ 1 times what it was over the domain and its reach, and depth c + (z - c) /
+/// w(p) for the light's own z and c of `projective_depth`: monotone along every light ray and
+/// inside the depth range, for orthographic and perspective lights, reversed, infinite or not.
+/// Where w is large depths crowd together towards c by that factor; the footprint bias knows. The
+/// light's own depth comes back from `linear_depth` with (1, c, c).
 template <typename T>
-glm::mat<4, 4, T> projective_matrix(const glm::mat<3, 3, T>& map, clip_space clip) {
+glm::mat<4, 4, T> projective_matrix(const glm::mat<3, 3, T>& map, clip_space clip,
+                                    light_kind kind) {
     const glm::mat<3, 3, double> h(map);
     const double up = clip.y_down ? -1.0 : 1.0;
+    const double centre = projective_depth<double>(kind, clip);
     // map = ½ ndc + ½ on the right, ndc = 2 map - 1 on the left
     glm::mat<4, 4, double> m(0.0);
     const glm::vec<3, double> columns[3] = {0.5 * h[0], 0.5 * up * h[1],
@@ -243,7 +258,10 @@ glm::mat<4, 4, T> projective_matrix(const glm::mat<3, 3, T>& map, clip_space cli
     const glm::length_t to[3] = {0, 1, 3};
     for (int i = 0; i < 3; ++i) {
         const glm::vec<3, double>& c = columns[i];
-        m[to[i]] = glm::vec<4, double>(2.0 * c.x - c.z, up * (2.0 * c.y - c.z), 0.0, c.z);
+        // of depth the warp's w less the light's own, times the centre
+        const double own = i == 2 ? 1.0 : 0.0;
+        m[to[i]] =
+            glm::vec<4, double>(2.0 * c.x - c.z, up * (2.0 * c.y - c.z), centre * (c.z - own), c.z);
     }
     m[2][2] = 1.0;
     return glm::mat<4, 4, T>(m);

@@ -1,6 +1,7 @@
 // Properties of warpshadow/projective.hpp.
 #include "camera.hpp"
 
+#include <warpshadow/bias.hpp>
 #include <warpshadow/light.hpp>
 #include <warpshadow/projective.hpp>
 
@@ -156,6 +157,49 @@ weights any_histogram() {
     h.cells[0] += 1.0; // never empty
     return h;
 }
+
+/// A floor under a spot light that shines along it, seen by an eye low above the floor.
+struct spot_floor {
+    light<double> source = spot_light<double>(vec3(0.0, 3.0, 0.0), vec3(6.0, 0.0, 0.0), 1.9);
+    vec3 eye = vec3(14.0, 1.0, 0.5);
+
+    mat4 matrix(clip_space clip) const {
+        return spot_light_matrix<double>(source, 0.02, 40.0, clip).matrix;
+    }
+    projective_result<double> fit() const {
+        weights h{std::vector<double>(64 * 64), 64, 64};
+        const mat4 light = matrix(clip::opengl);
+        for (int i = 0; i < 400; ++i) {
+            for (int j = 0; j < 400; ++j) {
+                // equal steps of the picture: distance from the eye grows with 1 / the angle
+                const double k = 1.0 / (0.05 + 0.95 * (i + 0.5) / 400.0);
+                const vec3 p = vec3(eye.x - k, 0.0, eye.z + 0.7 * k * ((j + 0.5) / 200.0 - 1.0));
+                const vec4 c = light * vec4(p, 1.0);
+                const vec2 at = 32.0 + 32.0 * vec2(c) / c.w;
+                if (c.w > 0.0 && at.x > 0.0 && at.y > 0.0 && at.x < 64.0 && at.y < 64.0) {
+                    h.cells[static_cast<std::size_t>(int(at.y) * 64 + int(at.x))] += c.w;
+                }
+            }
+        }
+        return fit_projective<double>(h.span(), 64, 64);
+    }
+    /// How far the footprint bias moves a point of the floor along its ray, in sides of a texel.
+    double bias_in_texels(const mat4& light, clip_space clip) const {
+        const vec3 p(9.0, 0.0, 0.0);
+        const glm::dvec2 texel(1.0 / 1024.0);
+        const glm::dmat2 none(1.0);
+        const vec3 normal = map_normal(map_planes(light, clip).matrix, vec4(0.0, 1.0, 0.0, 0.0));
+        bias_settings<double> settings = settings_for(glm::dvec2(1024.0), 0.0);
+        settings.largest = 1.0;
+        const depth_bias<double> bias = footprint_bias(normal, none, settings);
+        const vec4 c = light * vec4(p, 1.0);
+        const vec4 along = light * vec4(glm::normalize(p - source.position), 0.0);
+        const double scale = clip.depth == depth_range::zero_to_one ? 1.0 : 0.5;
+        const double gained = scale * std::abs(along.z * c.w - c.z * along.w) / (c.w * c.w);
+        const texel_axes<double> axes = texel_axes_at(light, none, p, texel);
+        return bias.value / gained / std::sqrt(glm::length(glm::cross(axes.u, axes.v)));
+    }
+};
 
 template <typename T> bool finite(const projective_result<T>& r) {
     bool ok = std::isfinite(r.rho) && std::isfinite(r.gain) && std::isfinite(r.state.bend.x) &&
@@ -328,28 +372,71 @@ TEST_CASE("matrix and map are one warp, in every convention; depth stays in rang
         const weights h = any_histogram();
         const auto r = fit_projective<double>(h.span(), h.width, h.height);
         const clip_space clip = camera_test::any_convention();
-        const mat4 warp = projective_matrix(r.map, clip);
+        const auto kind =
+            *rc::gen::element(light_kind::directional, light_kind::spot, light_kind::point);
+        const mat4 warp = projective_matrix(r.map, clip, kind);
         // a light of either kind: clip w 1, or a distance
-        const double own_w = coin() ? 1.0 : log_between<double>(1e-3, 1e3);
+        const double own_w = kind == light_kind::directional ? 1.0 : log_between<double>(1e-3, 1e3);
         const int cell = *rc::gen::inRange(0, h.width * h.height);
         RC_PRE(h.cells[static_cast<std::size_t>(cell)] > 0.0);
         const vec2 p = h.centre(cell % h.width, cell / h.width);
         const double lowest = clip.depth == depth_range::zero_to_one ? 0.0 : -1.0;
-        const double z0 = between<double>(lowest, 1.0);
-        const double z1 = between<double>(lowest, 1.0);
-        double depth[2];
-        for (int i = 0; i < 2; ++i) {
-            const vec4 c = warp * (own_w * vec4(ndc_from_map(p, clip), i == 0 ? z0 : z1, 1.0));
+        const double centre = projective_depth<double>(kind, clip);
+        // both planes and what lies between
+        const double z[4] = {near_depth<double>(clip), between<double>(lowest, 1.0),
+                             between<double>(lowest, 1.0), far_depth<double>(clip)};
+        double depth[4];
+        for (int i = 0; i < 4; ++i) {
+            const vec4 c = warp * (own_w * vec4(ndc_from_map(p, clip), z[i], 1.0));
             RC_ASSERT(c.w >= own_w * (1.0 - 1e-12));
             const vec2 found = map_from_ndc(vec2(c) / c.w, clip);
             const vec2 expected = fitted_position(r.map, p);
             RC_ASSERT(glm::length(found - expected) <= 1e-6); // degenerate extents: 2^-24 of 2^-53
             depth[i] = c.z / c.w;
-            RC_ASSERT(depth[i] >= lowest);
-            RC_ASSERT(depth[i] <= 1.0);
+            RC_ASSERT(depth[i] >= lowest - 1e-12);
+            RC_ASSERT(depth[i] <= 1.0 + 1e-12);
+            const double w = (r.map * vec3(p, 1.0)).z;
+            const double back = linear_depth(depth[i], w, vec3(1.0, centre, centre));
+            RC_ASSERT(std::abs(back - z[i]) <= 1e-12 * (1.0 + w));
         }
-        RC_ASSERT((z0 < z1 ? depth[0] <= depth[1] : depth[0] >= depth[1]));
+        for (int i = 0; i < 4; ++i) {
+            for (int k = 0; k < 4; ++k) {
+                RC_ASSERT((z[i] < z[k] ? depth[i] <= depth[k] + 1e-15 : true));
+            }
+        }
     }));
+}
+
+TEST_CASE("a warp does not make a spot light's receivers steep in any convention") {
+    // a floor below a spot light that looks along it, in the middle of its map
+    const spot_floor scene;
+    double steepness[2][8];
+    int count = 0;
+    for (const depth_range depth : {depth_range::minus_one_to_one, depth_range::zero_to_one}) {
+        for (const bool reversed : {false, true}) {
+            for (const bool infinite : {false, true}) {
+                clip_space clip = clip::opengl;
+                clip.depth = depth;
+                clip.reversed_z = reversed;
+                clip.infinite_far = infinite;
+                const mat4 light = scene.matrix(clip);
+                const auto r = scene.fit();
+                CHECK(r.rho > 0.5);
+                const mat4 warps[2] = {mat4(1.0), projective_matrix(r.map, clip, light_kind::spot)};
+                for (int warped = 0; warped < 2; ++warped) {
+                    steepness[warped][count] = scene.bias_in_texels(warps[warped] * light, clip);
+                }
+                ++count;
+            }
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        CAPTURE(i);
+        // half a texel per axis of slope 1 at most, in sides of a texel, as without a warp
+        CHECK(steepness[1][i] <= 2.0 * steepness[0][i]);
+        // the depth that stays is that of the far plane, here 40 away or at infinity
+        CHECK(steepness[1][i] == Approx(steepness[1][i % 2]).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("straight lines stay straight, and composition is a product") {
