@@ -142,10 +142,15 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
         gl::wait_for_writes();
     });
     gpu_.timed_pass("cut triangles", [&] {
-        // three halvings, one of each edge, make a triangle half as large
+        // three halvings, one of each edge, make a triangle half as large; mostly few are needed
         const int rounds = choice.kind < raster_kind::rule ? 0 : 3 * most_halvings;
         for (int round = 0; round < rounds; ++round) {
             const std::size_t source = static_cast<std::size_t>(round % 2);
+            std::array<std::uint32_t, 2> waiting{};
+            counters_.read(offsetof(triangle_counts, waiting), sizeof waiting, waiting.data());
+            if (waiting[source] == 0) {
+                break;
+            }
             const std::uint32_t zero = 0;
             counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
                             sizeof zero, &zero);
@@ -153,7 +158,7 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
             waiting_[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
             cut_.set("list", static_cast<int>(source));
             cut_.set("last_round", static_cast<int>(round + 1 == rounds));
-            cut_.dispatch(64 * 64);
+            cut_.dispatch(static_cast<int>(std::min<std::uint32_t>(waiting[source], 64 * 64)));
             gl::wait_for_writes();
         }
     });
@@ -209,6 +214,7 @@ bool warped_raster::grow_lists() {
     };
     const std::size_t ready = ready_.bytes() / piece_bytes;
     const std::size_t waiting = waiting_[0].bytes() / piece_bytes;
+    // what was lost is a source or a piece: both lists grow
     const bool lost = any_of(&triangle_counts::lost);
     const bool crowded = any_of(&triangle_counts::crowded);
     if ((!lost && !crowded) || ready > most_pieces || waiting > most_pieces) {
@@ -216,6 +222,9 @@ bool warped_raster::grow_lists() {
     }
     counted_.clear();
     set_capacity(lost ? 2 * ready : ready, crowded ? 2 * waiting : waiting);
+    if (lost) {
+        sources_ = gl::buffer(2 * sources_.bytes(), nullptr, GL_DYNAMIC_COPY);
+    }
     return true;
 }
 

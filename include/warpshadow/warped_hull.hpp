@@ -117,13 +117,18 @@ warped_hull<T> hull_of_triangle(const table_view<T, Node>& rows, const table_vie
     for (int i = 0; i < 6; ++i) {
         hull.reach[i] = T(0);
     }
-    reach_edge(rows, columns, p0, p1, q0, hull);
-    reach_edge(rows, columns, p1, p2, q0, hull);
-    reach_edge(rows, columns, p2, p0, q0, hull);
+    glm::vec<2, T> from = p2;
+    glm::vec<2, T> to = p0;
+    // a loop, and not three calls: shader compilers copy what is called
+    for (int i = 0; i < 3; ++i) {
+        reach_edge(rows, columns, from, to, q0, hull);
+        from = to;
+        to = i == 0 ? p1 : p2;
+    }
 
     T beyond = longest == length0 || !(longest > T(0)) ? hull.reach[0]
-            : longest == length1                    ? hull.reach[1]
-                                                    : hull.reach[2];
+               : longest == length1                    ? hull.reach[1]
+                                                       : hull.reach[2];
     T ahead = hull.reach[3] + margin;
     T behind = -hull.reach[4] - margin;
     T inner = hull.reach[5] + margin;

@@ -1,7 +1,6 @@
 // Everything but glsl.hpp, which allocates strings and is wanted by programs that build shaders.
 #pragma once
 
-#include <warpshadow/bend_table.hpp>
 #include <warpshadow/bias.hpp>
 #include <warpshadow/build_options.hpp>
 #include <warpshadow/calipers.hpp>

@@ -21,21 +21,32 @@ void put(waiting_piece t)
     asks_for_cut(t, true);
 }
 
+waiting_piece half_of(waiting_piece t, bool second)
+{
+    // turn the edge to p0 p1
+    vec2 p0 = t.edge == 0 ? t.p0 : t.edge == 1 ? t.p1 : t.p2;
+    vec2 p1 = t.edge == 0 ? t.p1 : t.edge == 1 ? t.p2 : t.p0;
+    vec2 p2 = t.edge == 0 ? t.p2 : t.edge == 1 ? t.p0 : t.p1;
+    precise vec2 middle = (p0 + p1) * 0.5;
+    return waiting_piece(second ? middle : p0, second ? p1 : middle, p2, t.source, 0);
+}
+
 void main()
 {
     uint count = min(waiting[list], uint(waiting_list.length()));
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
         waiting_piece t = waiting_list[i];
-        // turn the edge to p0 p1
-        vec2 p0 = t.edge == 0 ? t.p0 : t.edge == 1 ? t.p1 : t.p2;
-        vec2 p1 = t.edge == 0 ? t.p1 : t.edge == 1 ? t.p2 : t.p0;
-        vec2 p2 = t.edge == 0 ? t.p2 : t.edge == 1 ? t.p0 : t.p1;
-        precise vec2 middle = (p0 + p1) * 0.5;
+        // hulls need not agree from triangle to triangle: their pieces are halved twice at once
+        int parts = raster == RASTER_EXACT ? 4 : 2;
         // one call in a loop: the compiler copies what it calls
-        for (int half_of = 0; half_of < 2; ++half_of) {
-            put(waiting_piece(half_of == 0 ? p0 : middle, half_of == 0 ? middle : p1, p2, t.source,
-                              0));
+        for (int part = 0; part < parts; ++part) {
+            waiting_piece piece = half_of(t, (part & 1) != 0);
+            if (parts == 4) {
+                piece.edge = longest_edge(edge_lengths(piece));
+                piece = half_of(piece, (part & 2) != 0);
+            }
+            put(piece);
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "warpshadow/warp.glsl"
 #include "warpshadow/edge_walk.glsl"
 #include "warpshadow/warped_hull.glsl"
+#include "warpshadow/tessellation.glsl"
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
 
@@ -32,8 +33,7 @@ bool needs_cut(vec2 a, vec2 b)
     if (distance(a, b) > longest) {
         return true;
     }
-    return raster == RASTER_BOUND &&
-           ws_edge_deviation(warp_rows, warp_columns, a, b, deviation) > deviation;
+    return raster == RASTER_BOUND && ws_edge_needs_cut(warp_rows, warp_columns, a, b, deviation);
 }
 
 int longest_edge(vec3 lengths)
@@ -42,10 +42,15 @@ int longest_edge(vec3 lengths)
     return most == lengths.x ? 0 : most == lengths.y ? 1 : 2;
 }
 
+vec3 edge_lengths(waiting_piece t)
+{
+    return vec3(distance(t.p0, t.p1), distance(t.p1, t.p2), distance(t.p2, t.p0));
+}
+
 // Draws the piece, or names the edge to cut: the longest of those that need it.
 bool asks_for_cut(inout waiting_piece t, bool last)
 {
-    vec3 lengths = vec3(distance(t.p0, t.p1), distance(t.p1, t.p2), distance(t.p2, t.p0));
+    vec3 lengths = edge_lengths(t);
     if (raster == RASTER_EXACT) {
         t.edge = longest_edge(lengths);
         if (!last && lengths[t.edge] > longest) {

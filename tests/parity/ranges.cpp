@@ -32,18 +32,6 @@ whole_range range_of(std::string_view function, std::string_view parameter,
     if (parameter == "k") {
         return {0, 4}; // a node; every table has at least four cells
     }
-    // bend tables: every table has at least four cells and rows
-    if (parameter == "blocks") {
-        return {4, 4};
-    }
-    if (parameter == "level") {
-        return {1, 2};
-    }
-    if (parameter == "cell0" || parameter == "cell1" || parameter == "row0" ||
-        parameter == "row1" || function == "ws_bend_of_block" ||
-        function == "ws_bend_of_surroundings") {
-        return {0, 3};
-    }
     if (parameter == "face") {
         return {-1, 6};
     }

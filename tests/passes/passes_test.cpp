@@ -2,8 +2,8 @@
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 
-#include <warpshadow/bend_table.hpp>
 #include <warpshadow/fit.hpp>
+#include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp_build.hpp>
 
 #include <catch2/catch.hpp>
@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -221,70 +222,117 @@ TEST_CASE("passes: tables of the device are those of the host") {
     }
 }
 
-TEST_CASE("passes: the bend table of the device is that of the host") {
+TEST_CASE(
+    "passes: tessellation factors of the device are those of the host, on both sides of edges") {
     const gl::headless_context context;
-    const gl::program measure =
-        pass("#define WS_BINDING_BENDS 2\n#include \"warpshadow/warp.glsl\"\n"
-             "#include \"warpshadow/bend_table.glsl\"\n#include \"passes/bend_table.glsl\"\n");
-    for (const int size : {2, 17, 64, 200}) {
-        for (const int blocks : {2, 16, 64}) {
-            CAPTURE(size, blocks);
-            const view samples = make_view({97, 61}, static_cast<unsigned>(size));
-            const auto cells = static_cast<std::size_t>(size);
-            std::vector<std::uint32_t> counts(cells * cells);
-            std::vector<std::uint64_t> scratch(cells);
-            std::vector<float> row_nodes(cells * (cells + 1));
-            std::vector<float> column_nodes(cells * (cells + 1));
-            const ws::warp_result<float> warp =
-                ws::build_warp<float, float>(samples.lit, {.window = 0.12f, .floor = 0.2f},
-                                             {size, counts, scratch, row_nodes, column_nodes});
-            std::vector<float> host(ws::bend_nodes(blocks));
-            ws::table_view<float> bends;
-            REQUIRE(ws::build_bends(warp.rows, warp.columns, blocks, std::span(host), bends) ==
-                    ws::status::ok);
+    static const gl::shader_library library{gl::glsl_files()};
+    const auto stage = [&](GLenum type, const std::string& text) {
+        return gl::stage{type, library.compose("#version 430 core\n" + text, "stage")};
+    };
+    const gl::program draw(
+        {stage(GL_VERTEX_SHADER,
+               "layout(std430, binding = 1) readonly buffer corners { vec4 corner[]; };\n"
+               "out vec3 ws_map_place;\n"
+               "void main() { ws_map_place = corner[gl_VertexID].xyz; }\n"),
+         stage(GL_TESS_CONTROL_SHADER, "#include \"warpshadow/tessellation.glsl\"\n"
+                                       "#include \"passes/tessellation_control.glsl\"\n"),
+         stage(GL_TESS_EVALUATION_SHADER,
+               "layout(std430, binding = 2) writeonly buffer levels { vec4 level[]; };\n"
+               "#define WS_AFTER_WARP level[gl_PrimitiveID] = \\\n"
+               "    vec4(gl_TessLevelOuter[0], gl_TessLevelOuter[1], gl_TessLevelOuter[2], \\\n"
+               "         gl_TessLevelInner[0]);\n"
+               "#include \"warpshadow/warp.glsl\"\n"
+               "#include \"passes/tessellation_evaluation.glsl\"\n"),
+         stage(GL_FRAGMENT_SHADER, "void main() {}\n")});
+    const int size = 48;
+    const view samples = make_view({97, 61}, 5);
+    const auto cells = static_cast<std::size_t>(size);
+    std::vector<std::uint32_t> counts(cells * cells);
+    std::vector<std::uint64_t> scratch(cells);
+    std::vector<float> row_nodes(cells * (cells + 1));
+    std::vector<float> column_nodes(cells * (cells + 1));
+    const ws::warp_result<float> warp =
+        ws::build_warp<float, float>(samples.lit, {.window = 0.3f, .floor = 0.2f},
+                                     {size, counts, scratch, row_nodes, column_nodes});
+    gl::texture rows(GL_R32F, size + 1, size);
+    gl::texture columns(GL_R32F, size + 1, size);
+    rows.write(row_nodes.data());
+    columns.write(column_nodes.data());
+    rows.bind(0);
+    columns.bind(1);
 
-            gl::texture rows(GL_R32F, size + 1, size);
-            gl::texture columns(GL_R32F, size + 1, size);
-            rows.write(row_nodes.data());
-            columns.write(column_nodes.data());
-            gl::texture table(GL_R32F, blocks, ws::bend_rows(blocks));
-            table.clear(glm::vec4(0.0f));
-            rows.bind(0);
-            columns.bind(1);
-            table.bind(2);
-            table.bind_image(0, GL_WRITE_ONLY);
-            int level = 0;
-            for (int across = blocks; across >= 1; across /= 2) {
-                measure.set("ws_level", level++);
-                measure.dispatch(across, across);
-                gl::wait_for_writes();
+    // a net of triangles over the map with moved corners; llvmpipe counts 340 patches right
+    const int across = 12;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> shift(-0.3f, 0.3f);
+    std::vector<glm::vec4> net;
+    for (int i = 0; i < (across + 1) * (across + 1); ++i) {
+        const glm::vec2 p((static_cast<float>(i % (across + 1)) + shift(random)) / across,
+                          (static_cast<float>(i / (across + 1)) + shift(random)) / across);
+        net.emplace_back(glm::clamp(p, 0.0f, 1.0f), 0.5f, 0.0f);
+    }
+    std::vector<glm::vec4> corners;
+    for (int y = 0; y < across; ++y) {
+        for (int x = 0; x < across; ++x) {
+            const int first = y * (across + 1) + x;
+            for (const int i : {0, 1, across + 2, 0, across + 2, across + 1}) {
+                corners.push_back(net[static_cast<std::size_t>(first + i)]);
             }
-            const std::vector<float> device = table.read<float>();
-            REQUIRE(device.size() == host.size());
-            float worst = 0.0f;
-            float largest = 0.0f;
-            int row = 0;
-            for (int across = blocks; across >= 1; across /= 2) {
-                for (int y = 0; y < across; ++y) {
-                    for (int x = 0; x < across; ++x) {
-                        const auto at = static_cast<std::size_t>((row + y) * blocks + x);
-                        largest = std::max(largest, host[at]);
-                        worst = std::max(worst, std::abs(device[at] - host[at]) /
-                                                    std::max(host[at], 1e-30f));
-                    }
-                }
-                row += across;
-            }
-            // D is a root of sums of products of numbers that are not negative: a compiler that
-            // contracts them changes each of a dozen roundings by one
-            CHECK(worst <= 16.0f * std::numeric_limits<float>::epsilon());
-            CHECK(largest > 0.0f);
-            const auto unit = static_cast<std::size_t>(ws::bend_rows(blocks) - 1) *
-                                  static_cast<std::size_t>(blocks) +
-                              1;
-            CHECK(device[unit] == host[unit]);
         }
     }
+    const std::size_t patches = corners.size() / 3;
+    const gl::buffer corner_buffer{std::span<const glm::vec4>(corners)};
+    gl::buffer levels(patches * sizeof(glm::vec4), nullptr, GL_DYNAMIC_COPY);
+    levels.fill(0);
+    const float allowed = 0.25f / 512.0f;
+    draw.set("ws_allowed", allowed);
+    draw.set("ws_most_segments", 32);
+    gl::texture depth(GL_DEPTH_COMPONENT32F, 64, 64);
+    const gl::framebuffer target({}, &depth);
+    const gl::vertex_array nothing;
+    target.bind();
+    nothing.bind();
+    corner_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+    levels.bind_base(GL_SHADER_STORAGE_BUFFER, 2);
+    draw.use();
+    glPatchParameteri(GL_PATCH_VERTICES, 3);
+    glDrawArrays(GL_PATCHES, 0, static_cast<GLsizei>(corners.size()));
+    gl::wait_for_writes();
+    const std::vector<glm::vec4> device = levels.read<glm::vec4>();
+    gl::check("tessellation");
+
+    std::map<std::array<float, 4>, float> of_edge;
+    int cut = 0;
+    int shared = 0;
+    for (std::size_t i = 0; i < patches; ++i) {
+        float most = 0.0f;
+        for (int k = 0; k < 3; ++k) {
+            const auto corner = [&](int c) {
+                return glm::vec2(corners[3 * i + static_cast<std::size_t>(c % 3)]);
+            };
+            glm::vec2 a = corner(k + 1);
+            glm::vec2 b = corner(k + 2);
+            const float level = device[i][k];
+            most = std::max(most, level);
+            CAPTURE(i, k, level);
+            // what the device rounds otherwise may tip a bound over what is allowed
+            const float one = 1e-6f;
+            const int least = ws::edge_segments(warp.rows, warp.columns, a, b, allowed + one, 32);
+            const int largest = ws::edge_segments(warp.rows, warp.columns, a, b, allowed - one, 32);
+            CHECK(level >= static_cast<float>(least));
+            CHECK(level <= static_cast<float>(largest));
+            cut += level > 1.0f ? 1 : 0;
+            if (b.x < a.x || (b.x == a.x && b.y < a.y)) {
+                std::swap(a, b);
+            }
+            const auto [found, fresh] = of_edge.try_emplace({a.x, a.y, b.x, b.y}, level);
+            CHECK(found->second == level);
+            shared += fresh ? 0 : 1;
+        }
+        CHECK(device[i][3] == most);
+    }
+    CHECK(cut > 40);
+    CHECK(shared == across * across + 2 * across * (across - 1));
 }
 
 TEST_CASE("passes: an empty view gives the identity") {

@@ -1,17 +1,14 @@
-// Properties of warpshadow/bend_table.hpp and tessellation.hpp: no warped edge and no triangle
-// departs from straight lines by more than the bound, and cutting by the rules keeps what was asked
-// for.
+// Properties of edge_walk.hpp, tessellation.hpp and warped_hull.hpp: no warped edge departs from
+// its chord by more than the bound, cutting by the rules keeps what was asked for, and no part of a
+// warped triangle lies outside its hull.
 //
 // The oracle evaluates the stored nodes in long double, piece by piece, and shares no code with the
-// library. `slack` is what the rounding of D may take from the bound: a second difference is one of
-// two first differences, each rounded by u / 2 of a number up to 1, so eight times u in D at most
-// for the factors met here, and u (n² + 1) in D f(n); the sums and products that follow are a few u
-// of the result, and ends and points of an edge are rounded by u each.
+// library.
 #include "warp_oracle.hpp"
 
-#include <warpshadow/bend_table.hpp>
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warped_hull.hpp>
 
 #include <catch2/catch.hpp>
 #include <glm/vec2.hpp>
@@ -70,8 +67,6 @@ template <typename T> struct owned_table {
 
 template <typename T> struct warp_tables {
     owned_table<T> rows, columns;
-    std::vector<T> memory;
-    table_view<T> bends;
 
     warp_tables(int c0, int r0, int c1, int r1) : rows(c0, r0), columns(c1, r1) {}
 
@@ -79,11 +74,12 @@ template <typename T> struct warp_tables {
         const real u = rows.value(p.y, p.x);
         return {u, columns.value(u, p.y)};
     }
-    void build(int blocks) {
-        memory.assign(bend_nodes(blocks), std::numeric_limits<T>::quiet_NaN());
-        // the last row has one number and the unit; nothing else is left unset that is read
-        REQUIRE(build_bends(rows.view(), columns.view(), blocks, std::span<T>(memory), bends) ==
-                status::ok);
+    /// What rounding of positions makes of warped places: u and v by the steepest functions, and v
+    /// by the steps from function to function times the error of u.
+    [[nodiscard]] real rounding() const {
+        const real u = static_cast<real>(roundoff<T>());
+        const real of_u = u * (16 + 8 * rows.cells + 8 * rows.rows);
+        return (of_u + u * 8 * columns.cells) * (1 + columns.rows);
     }
 };
 
@@ -149,27 +145,11 @@ template <typename T> warp_tables<T> any_tables(dice& d) {
     warp_tables<T> tables(c0, r0, c1, r1);
     fill(tables.rows, d);
     fill(tables.columns, d);
-    tables.build(2 << d.between(0, 5));
     return tables;
 }
 
 template <typename T> glm::vec<2, T> any_point(dice& d) {
     return {static_cast<T>(d.unit()), static_cast<T>(d.unit())};
-}
-
-template <typename T>
-real distance_at(const warp_tables<T>& t, const std::array<real2, 3>& corner,
-                 const std::array<real, 3>& share) {
-    real2 flat{0, 0}, p{0, 0};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const real2 q = t.warped(corner[i]);
-        flat.x += share[i] * q.x;
-        flat.y += share[i] * q.y;
-        p.x += share[i] * corner[i].x;
-        p.y += share[i] * corner[i].y;
-    }
-    const real2 exact = t.warped(p);
-    return std::hypot(exact.x - flat.x, exact.y - flat.y);
 }
 
 template <typename T> real wide(T x) {
@@ -180,181 +160,94 @@ template <typename T> real2 wide(glm::vec<2, T> p) {
     return {static_cast<real>(p.x), static_cast<real>(p.y)};
 }
 
-/// Largest deviation found along an edge, at equal steps and at kinks.
-template <typename T>
-real edge_error(const warp_tables<T>& t, glm::vec<2, T> a, glm::vec<2, T> b, int steps) {
-    real most = 0;
-    const std::array<real2, 3> corner{wide(a), wide(b), wide(a)};
+/// Places of a warped edge, at equal steps and on both sides of all kinks of the unwarped map.
+template <typename T, typename Use>
+void along_edge(const warp_tables<T>& t, glm::vec<2, T> from, glm::vec<2, T> to, int steps,
+                Use use) {
+    const real2 a = wide(from);
+    const real dx = wide(to.x) - a.x;
+    const real dy = wide(to.y) - a.y;
     const auto try_at = [&](real s) {
-        if (s > 0 && s < 1) {
-            most = std::max(most, distance_at(t, corner, {1 - s, s, 0}));
+        if (s >= 0 && s <= 1) {
+            use(t.warped({a.x + s * dx, a.y + s * dy}));
         }
     };
-    for (int i = 1; i < steps; ++i) {
+    for (int i = 0; i <= steps; ++i) {
         try_at(static_cast<real>(i) / steps);
     }
-    const real dx = corner[1].x - corner[0].x;
-    const real dy = corner[1].y - corner[0].y;
     for (int k = 1; k < t.rows.cells && dx != 0; ++k) {
-        try_at((static_cast<real>(k) / t.rows.cells - corner[0].x) / dx);
+        try_at((static_cast<real>(k) / t.rows.cells - a.x) / dx);
     }
     for (int k = 0; k < t.rows.rows && dy != 0; ++k) {
-        try_at(((k + real(0.5)) / t.rows.rows - corner[0].y) / dy);
+        try_at(((k + real(0.5)) / t.rows.rows - a.y) / dy);
     }
     for (int k = 1; k < t.columns.cells && dy != 0; ++k) {
-        try_at((static_cast<real>(k) / t.columns.cells - corner[0].y) / dy);
+        try_at((static_cast<real>(k) / t.columns.cells - a.y) / dy);
     }
-    return most;
 }
 
+/// Largest distance found between a warped edge and the line through its warped ends.
 template <typename T>
-real triangle_error(const warp_tables<T>& t, const std::array<glm::vec<2, T>, 3>& p, dice& d,
-                    int tries) {
-    const std::array<real2, 3> corner{wide(p[0]), wide(p[1]), wide(p[2])};
+real edge_error(const warp_tables<T>& t, glm::vec<2, T> a, glm::vec<2, T> b, int steps) {
+    const real2 from = t.warped(wide(a));
+    const real2 to = t.warped(wide(b));
+    const real length = std::hypot(to.x - from.x, to.y - from.y);
     real most = 0;
-    for (int i = 0; i < tries; ++i) {
-        real a = wide(d.unit()), b = wide(d.unit());
-        if (a + b > 1) {
-            a = 1 - a;
-            b = 1 - b;
+    along_edge(t, a, b, steps, [&](real2 q) {
+        if (length > 0) {
+            most = std::max(most, std::abs((to.x - from.x) * (q.y - from.y) -
+                                           (to.y - from.y) * (q.x - from.x)) /
+                                      length);
         }
-        most = std::max(most, distance_at(t, corner, {a, b, 1 - a - b}));
+    });
+    return most;
+}
+
+/// How far a place lies outside a hull.
+template <typename T> real outside(const warped_hull<T>& hull, real2 q) {
+    const auto corner = [&](int i) { return wide(hull.corner[i % hull.corners]); };
+    real area = 0;
+    for (int i = 0; i < hull.corners; ++i) {
+        area += corner(i).x * corner(i + 1).y - corner(i).y * corner(i + 1).x;
+    }
+    real most = 0;
+    for (int i = 0; i < hull.corners; ++i) {
+        const real2 a = corner(i);
+        const real2 b = corner(i + 1);
+        const real length = std::hypot(b.x - a.x, b.y - a.y);
+        const real side = (b.x - a.x) * (q.y - a.y) - (b.y - a.y) * (q.x - a.x);
+        if (length > 0) {
+            most = std::max(most, (area < 0 ? side : -side) / length);
+        }
     }
     return most;
 }
 
-/// Rounding that a bound for n cells may lack; see the head of this file.
-template <typename T> real slack(T n, T bound) {
-    const real u = wide(roundoff<T>());
-    return u * (static_cast<real>(n) * static_cast<real>(n) + 1) +
-           32 * u * (1 + static_cast<real>(bound));
+/// A point near another, all distances being about as likely.
+template <typename T> glm::vec<2, T> near_point(dice& d, glm::vec<2, T> a, T scale) {
+    return glm::clamp(a + scale * (any_point<T>(d) - any_point<T>(d)), T(0), T(1));
 }
 
-/// Cuts a triangle by `edge_needs_cut`, as the shadow pass does; collects the pieces.
-template <typename T>
-void cut(const warp_tables<T>& t, const std::array<glm::vec<2, T>, 3>& whole, T allowed,
-         std::vector<std::array<glm::vec<2, T>, 3>>& pieces, int depth = 0) {
-    REQUIRE(depth < 64);
-    int longest = -1;
-    T most = T(0);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::vec<2, T> a = whole[i], b = whole[(i + 1) % 3];
-        if (edge_needs_cut(t.bends, a, b, allowed) && bend_length(a, b) > most) {
-            most = bend_length(a, b);
-            longest = static_cast<int>(i);
+template <typename T> T any_scale(dice& d) {
+    return static_cast<T>(std::exp2(-d.between(0.0, 12.0)));
+}
+
+/// A table that is a straight line along each axis.
+template <typename T> warp_tables<T> straight_tables(int cells) {
+    warp_tables<T> t(cells, cells, cells, cells);
+    for (owned_table<T>* table : {&t.rows, &t.columns}) {
+        for (int row = 0; row < cells; ++row) {
+            for (int k = 0; k <= cells; ++k) {
+                table->at(row, k) = T(k) / T(cells);
+            }
         }
     }
-    if (longest < 0) {
-        pieces.push_back(whole);
-        return;
-    }
-    const auto i = static_cast<std::size_t>(longest);
-    const glm::vec<2, T> a = whole[i], b = whole[(i + 1) % 3], c = whole[(i + 2) % 3];
-    const glm::vec<2, T> middle = (a + b) * T(0.5);
-    cut(t, {a, middle, c}, allowed, pieces, depth + 1);
-    cut(t, {middle, b, c}, allowed, pieces, depth + 1);
+    return t;
 }
 
 } // namespace
 
-TEMPLATE_TEST_CASE("no edge and no triangle departs by more than the bound", "", float, double) {
-    using T = TestType;
-    REQUIRE(rc::check([] {
-        dice d = any_dice();
-        const warp_tables<T> t = any_tables<T>(d);
-        for (int i = 0; i < 6; ++i) {
-            const glm::vec<2, T> a = any_point<T>(d);
-            // edges of all lengths: the bound is one only up to bend_margin
-            const T scale = static_cast<T>(std::exp2(-d.between(0.0, 12.0)));
-            const auto nearby = [&] {
-                return glm::clamp(a + scale * (any_point<T>(d) - any_point<T>(d)), T(0), T(1));
-            };
-            glm::vec<2, T> b = nearby();
-            if (d.between(0, 3) == 0) {
-                (d.coin() ? b.x : b.y) = d.coin() ? a.x : a.y;
-                b = glm::clamp(b, T(0), T(1));
-            }
-            const T bound = edge_deviation(t.bends, a, b);
-            RC_ASSERT(bound == edge_deviation(t.bends, b, a));
-            RC_ASSERT(bound >= T(0));
-            const T n = bend_length(a, b) * bend_cells_per_map(t.bends);
-            if (bound <= bend_margin<T>) {
-                RC_ASSERT(edge_error(t, a, b, 9) <= wide(bound) + slack(n, bound));
-            }
-            std::array<glm::vec<2, T>, 3> triangle{a, b, nearby()};
-            T most = T(0), longest = T(0);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const T length = bend_length(triangle[k], triangle[(k + 1) % 3]);
-                if (length >= longest) {
-                    longest = length;
-                    most = edge_deviation(t.bends, triangle[k], triangle[(k + 1) % 3]);
-                }
-            }
-            if (most <= bend_margin<T>) {
-                RC_ASSERT(triangle_error(t, triangle, d, 20) <=
-                          wide(most) + slack(longest * bend_cells_per_map(t.bends), most));
-            }
-        }
-    }));
-}
-
-TEMPLATE_TEST_CASE("pieces of an edge and of a triangle keep what was asked for", "", float,
-                   double) {
-    using T = TestType;
-    REQUIRE(rc::check([] {
-        dice d = any_dice();
-        const warp_tables<T> t = any_tables<T>(d);
-        const T allowed = static_cast<T>(std::exp2(-d.between(7.0, 11.0)));
-        const glm::vec<2, T> a = any_point<T>(d), b = any_point<T>(d);
-        const int n = edge_segments(t.bends, a, b, allowed, 4096);
-        RC_ASSERT(n == edge_segments(t.bends, b, a, allowed, 4096));
-        RC_ASSERT(n >= 1 && n <= 4096);
-        const T left = split_deviation(t.bends, a, b, n);
-        if (n < 4096) {
-            // a division, a root and a rounding up: a few u
-            RC_ASSERT(left <= allowed * (T(1) + T(16) * std::numeric_limits<T>::epsilon()));
-            for (int k = 0; k < std::min(n, 24); ++k) {
-                const auto at = [&](int i) { return a + (b - a) * (T(i) / T(n)); };
-                const T cells = bend_length(at(k), at(k + 1)) * bend_cells_per_map(t.bends);
-                RC_ASSERT(edge_error(t, at(k), at(k + 1), 5) <=
-                          wide(allowed) + slack(cells, allowed));
-            }
-        }
-        const glm::vec<2, T> c =
-            glm::clamp(a + T(0.1) * (any_point<T>(d) - any_point<T>(d)), T(0), T(1));
-        const glm::vec<2, T> e =
-            glm::clamp(a + T(0.1) * (any_point<T>(d) - any_point<T>(d)), T(0), T(1));
-        int most = 0;
-        for (const auto& [from, to] : {std::pair{a, c}, std::pair{c, e}, std::pair{e, a}}) {
-            most = std::max(most, edge_segments(t.bends, from, to, allowed, 4096));
-        }
-        if (most > 24) {
-            return; // thousands of pieces say no more than hundreds
-        }
-        std::vector<std::array<glm::vec<2, T>, 3>> pieces;
-        cut(t, {a, c, e}, allowed, pieces);
-        real area = 0;
-        const auto area_of = [](const std::array<glm::vec<2, T>, 3>& p) {
-            return ((wide(p[1].x) - wide(p[0].x)) * (wide(p[2].y) - wide(p[0].y)) -
-                    (wide(p[1].y) - wide(p[0].y)) * (wide(p[2].x) - wide(p[0].x))) /
-                   2;
-        };
-        for (const auto& piece : pieces) {
-            area += area_of(piece);
-            T longest = T(0);
-            for (std::size_t k = 0; k < 3; ++k) {
-                longest = std::max(longest, bend_length(piece[k], piece[(k + 1) % 3]));
-            }
-            RC_ASSERT(triangle_error(t, piece, d, 3) <=
-                      wide(allowed) + slack(longest * bend_cells_per_map(t.bends), allowed));
-        }
-        // middles are rounded by u; each piece's area by u times its size
-        RC_ASSERT(std::abs(area - area_of({a, c, e})) <=
-                  4 * wide(roundoff<T>()) * static_cast<real>(pieces.size() + 1));
-    }));
-}
-
-TEMPLATE_TEST_CASE("the measured deviation is met, symmetric and below the bound", "", float,
+TEMPLATE_TEST_CASE("no warped edge departs from its chord by more than the bound", "", float,
                    double) {
     using T = TestType;
     REQUIRE(rc::check([] {
@@ -363,111 +256,184 @@ TEMPLATE_TEST_CASE("the measured deviation is met, symmetric and below the bound
         const table_view<T> rows = t.rows.view(), columns = t.columns.view();
         for (int i = 0; i < 8; ++i) {
             const glm::vec<2, T> a = any_point<T>(d);
-            const T scale = static_cast<T>(std::exp2(-d.between(0.0, 10.0)));
-            const glm::vec<2, T> b =
-                glm::clamp(a + scale * (any_point<T>(d) - any_point<T>(d)), T(0), T(1));
-            const T found = measured_deviation(rows, columns, a, b, T(1));
-            RC_ASSERT(found == measured_deviation(rows, columns, b, a, T(1)));
-            // a search that may stop early finds no more
-            RC_ASSERT(measured_deviation(rows, columns, a, b, T(0)) <= found);
-            // points tried are multiples of 1/16; warped points are off by what warp_test derives:
-            // 9u per axis and the steps between rows and nodes, all below 1 here
-            const real u = wide(roundoff<T>());
-            const real rounding = u * (64 + 8 * (t.rows.rows + t.columns.rows + t.rows.cells));
-            const std::array<real2, 3> corner{wide(a), wide(b), wide(a)};
-            real most = 0;
-            for (int k = 1; k < 16; ++k) {
-                const real share = static_cast<real>(k) / 16;
-                most = std::max(most, distance_at(t, corner, {1 - share, share, 0}));
+            glm::vec<2, T> b = near_point(d, a, any_scale<T>(d));
+            if (d.between(0, 3) == 0) {
+                (d.coin() ? b.x : b.y) = d.coin() ? a.x : a.y;
+                b = glm::clamp(b, T(0), T(1));
             }
-            // the second axis multiplies errors of the first by its shear, up to the row count
-            RC_ASSERT(wide(found) <= most + rounding * (1 + t.columns.rows));
-            const T bound = edge_deviation(t.bends, a, b);
-            const T n = bend_length(a, b) * bend_cells_per_map(t.bends);
-            if (bound <= bend_margin<T>) {
-                RC_ASSERT(wide(found) <=
-                          wide(bound) + slack(n, bound) + rounding * (1 + t.columns.rows));
+            const T bound = edge_deviation(rows, columns, a, b, T(9));
+            RC_ASSERT(bound == edge_deviation(rows, columns, b, a, T(9)));
+            RC_ASSERT(bound >= T(0));
+            // a chord much shorter than its rounding has no direction
+            const real2 from = t.warped(wide(a)), to = t.warped(wide(b));
+            const real length = std::hypot(to.x - from.x, to.y - from.y);
+            if (length > 0) {
+                const real turn = t.rounding() / length;
+                RC_ASSERT(edge_error(t, a, b, 17) <=
+                          wide(bound) + t.rounding() + turn * (wide(bound) + length));
             }
             const T allowed = static_cast<T>(std::exp2(-d.between(7.0, 11.0)));
-            const bool departs = edge_departs(rows, columns, t.bends, a, b, allowed);
-            RC_ASSERT(departs == (edge_needs_cut(t.bends, a, b, allowed) &&
-                                  measured_deviation(rows, columns, a, b, allowed) > allowed));
+            RC_ASSERT(edge_needs_cut(rows, columns, a, b, allowed) == (bound > allowed));
         }
     }));
 }
 
-TEMPLATE_TEST_CASE("J45: linear tables are never cut", "", float, double) {
+TEMPLATE_TEST_CASE("the bound of an edge is no more than four times what it does on smooth tables",
+                   "", float, double) {
     using T = TestType;
     warp_tables<T> t(64, 64, 64, 64);
     for (owned_table<T>* table : {&t.rows, &t.columns}) {
         for (int row = 0; row < 64; ++row) {
             for (int k = 0; k <= 64; ++k) {
-                table->at(row, k) = T(k) / T(64);
+                const double x = k / 64.0;
+                const double share = 0.2 + 0.4 * (row + 0.5) / 64.0;
+                table->at(row, k) = static_cast<T>(
+                    x + share * std::sin(2.0 * 3.14159265358979 * x) / (2.0 * 3.14159265358979));
             }
         }
     }
-    t.build(32);
-    CHECK(edge_deviation(t.bends, glm::vec<2, T>(0), glm::vec<2, T>(1)) == T(0));
-    CHECK(edge_segments(t.bends, glm::vec<2, T>(0), glm::vec<2, T>(1), T(1e-6), 64) == 1);
-    CHECK_FALSE(edge_needs_cut(t.bends, glm::vec<2, T>(0), glm::vec<2, T>(1), T(1e-6)));
+    dice d(3);
+    int counted = 0;
+    for (int i = 0; i < 400; ++i) {
+        const glm::vec<2, T> a = any_point<T>(d);
+        const glm::vec<2, T> b = near_point(d, a, T(0.5));
+        const real found = edge_error(t, a, b, 65);
+        if (found > real(0.002)) {
+            ++counted;
+            CHECK(wide(edge_deviation(t.rows.view(), t.columns.view(), a, b, T(9))) <= 4 * found);
+        }
+    }
+    CHECK(counted > 50);
+}
+
+TEMPLATE_TEST_CASE("pieces of an edge keep what was asked for", "", float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const warp_tables<T> t = any_tables<T>(d);
+        const table_view<T> rows = t.rows.view(), columns = t.columns.view();
+        const T allowed = static_cast<T>(std::exp2(-d.between(7.0, 10.0)));
+        const glm::vec<2, T> a = any_point<T>(d), b = near_point(d, a, any_scale<T>(d));
+        const int limit = 1 << d.between(0, 6);
+        const int n = edge_segments(rows, columns, a, b, allowed, limit);
+        RC_ASSERT(n == edge_segments(rows, columns, b, a, allowed, limit));
+        RC_ASSERT(n >= 1 && n <= limit && (n & (n - 1)) == 0);
+        const T left = split_deviation(rows, columns, a, b, n, T(9));
+        RC_ASSERT(left == split_deviation(rows, columns, b, a, n, T(9)));
+        RC_ASSERT(left <= allowed || n == limit);
+        RC_ASSERT(n == 1 || split_deviation(rows, columns, a, b, n / 2, T(9)) > allowed);
+    }));
+}
+
+TEMPLATE_TEST_CASE("no part of a warped triangle lies outside its hull", "", float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const warp_tables<T> t = any_tables<T>(d);
+        for (int i = 0; i < 4; ++i) {
+            const glm::vec<2, T> a = any_point<T>(d);
+            const T scale = any_scale<T>(d);
+            std::array<glm::vec<2, T>, 3> p{a, near_point(d, a, scale), near_point(d, a, scale)};
+            const int kind = d.between(0, 9);
+            if (kind == 0) { // a sliver
+                p[2] = p[0] + static_cast<T>(d.unit()) * (p[1] - p[0]);
+            } else if (kind == 1) { // two corners in one
+                p[static_cast<std::size_t>(d.between(1, 2))] = p[0];
+            } else if (kind == 2) {
+                p[1] = p[2] = p[0];
+            }
+            const T margin = d.coin() ? T(0) : T(1.0 / 4096.0);
+            const warped_hull<T> hull =
+                hull_of_triangle(t.rows.view(), t.columns.view(), p[0], p[1], p[2], margin);
+            RC_ASSERT(hull.corners == 3 || hull.corners == 4);
+            RC_ASSERT(hull.area >= T(0) && hull.excess <= hull.area);
+            // the corners of a triangle lie where two lines meet at a sine of 0.02 or above
+            const real rounding = 64 * t.rounding();
+            for (std::size_t k = 0; k < 3; ++k) {
+                along_edge(t, p[k], p[(k + 1) % 3], 9,
+                           [&](real2 q) { RC_ASSERT(outside(hull, q) <= rounding); });
+            }
+            for (int k = 0; k < 10; ++k) {
+                real x = wide(d.unit()), y = wide(d.unit());
+                if (x + y > 1) {
+                    x = 1 - x;
+                    y = 1 - y;
+                }
+                const real2 p0 = wide(p[0]), p1 = wide(p[1]), p2 = wide(p[2]);
+                const real2 inside{p0.x + x * (p1.x - p0.x) + y * (p2.x - p0.x),
+                                   p0.y + x * (p1.y - p0.y) + y * (p2.y - p0.y)};
+                RC_ASSERT(outside(hull, t.warped(inside)) <= rounding);
+            }
+        }
+    }));
+}
+
+TEMPLATE_TEST_CASE("J45: linear tables are never cut, and hulls are the triangles", "", float,
+                   double) {
+    using T = TestType;
+    const warp_tables<T> t = straight_tables<T>(64);
+    const table_view<T> rows = t.rows.view(), columns = t.columns.view();
+    const glm::vec<2, T> a(0), b(1), c(T(1), T(0));
+    const T some = T(64) * std::numeric_limits<T>::epsilon();
+    CHECK(edge_deviation(rows, columns, a, b, T(9)) <= some);
+    CHECK(edge_segments(rows, columns, a, b, T(1e-6), 64) == 1);
+    CHECK_FALSE(edge_needs_cut(rows, columns, a, b, T(1e-6)));
+    const warped_hull<T> hull = hull_of_triangle(rows, columns, a, b, c, T(0));
+    CHECK(hull.corners == 3);
+    CHECK(hull.excess <= some);
+    CHECK(std::abs(hull.area - T(0.5)) <= some);
 }
 
 TEMPLATE_TEST_CASE("J44: one kink under an edge shorter than a cell", "", float, double) {
     using T = TestType;
-    // slopes 0.15 and 3.85 meet in the middle of a table of two cells: J = 3.7, h = 1/2
-    const int cells = 2;
-    warp_tables<T> t(cells, 1, cells, 1);
-    for (int k = 0; k <= cells; ++k) {
-        t.rows.at(0, k) = k == 1 ? T(0.075) : T(k) / T(cells);
-        t.columns.at(0, k) = T(k) / T(cells);
+    // slopes 0.15 and 1.85 meet in the middle of a table of two cells
+    warp_tables<T> t = straight_tables<T>(2);
+    for (int row = 0; row < 2; ++row) {
+        t.rows.at(row, 1) = T(0.075);
     }
-    t.build(2);
-    const T jump = T(2) * (T(1) - T(2) * T(0.075));
-    const glm::vec<2, T> a(T(0.49), T(0.5)), b(T(0.51), T(0.5));
-    // the bound is J L / 4, in the middle attained: units are the coarsest direction, one row here,
-    // so it is twice that for two cells
-    const T exact = jump * T(2) * (b.x - a.x) / T(4);
-    CHECK(edge_deviation(t.bends, a, b) >= exact / T(2) * T(0.999));
-    CHECK(edge_error(t, a, b, 2) <= wide(edge_deviation(t.bends, a, b)));
-    const int n = edge_segments(t.bends, a, b, T(0.5 / 1024), 4096);
-    CHECK(n > 1);
-    for (int k = 0; k < n; ++k) {
-        const auto at = [&](int i) { return a + (b - a) * (T(i) / T(n)); };
-        CHECK(edge_error(t, at(k), at(k + 1), 9) <= wide(0.5 / 1024 * 1.0001));
-    }
+    const table_view<T> rows = t.rows.view(), columns = t.columns.view();
+    const glm::vec<2, T> a(T(0.49), T(0.5)), b(T(0.51), T(0.51));
+    const T bound = edge_deviation(rows, columns, a, b, T(9));
+    const real found = edge_error(t, a, b, 2);
+    CHECK(found > real(0.001));
+    // the kink is walked to: nothing is lost
+    CHECK(wide(bound) >= found * real(0.9999));
+    CHECK(wide(bound) <= found * real(1.0001));
+    // along the axis points move, and the line stays a line
+    CHECK(edge_deviation(rows, columns, a, glm::vec<2, T>(b.x, a.y), T(9)) <=
+          T(8) * std::numeric_limits<T>::epsilon());
+    CHECK(edge_segments(rows, columns, a, b, T(0.5 / 1024), 64) == 2);
 }
 
 TEMPLATE_TEST_CASE("a cap on the pieces is answered with what it reaches", "", float, double) {
     using T = TestType;
-    dice d(7);
-    warp_tables<T> t(64, 64, 64, 64);
-    while (true) {
-        fill(t.rows, d);
-        t.columns = t.rows;
-        t.build(16);
-        if (edge_segments(t.bends, glm::vec<2, T>(0), glm::vec<2, T>(1), T(1e-4), 1000) > 8) {
-            break;
-        }
+    warp_tables<T> t = straight_tables<T>(2);
+    for (int row = 0; row < 2; ++row) {
+        t.rows.at(row, 1) = T(0.1);
     }
-    const glm::vec<2, T> a(0), b(1);
-    CHECK(edge_segments(t.bends, a, b, T(1e-4), 8) == 8);
-    CHECK(split_deviation(t.bends, a, b, 8) > T(1e-4));
-    CHECK(edge_segments(t.bends, a, b, std::numeric_limits<T>::denorm_min(), 8) == 8);
-    CHECK(edge_segments(t.bends, a, a, T(1e-4), 8) == 1);
+    const table_view<T> rows = t.rows.view(), columns = t.columns.view();
+    const glm::vec<2, T> a(0), b(T(1), T(0.7));
+    const T tiny = std::numeric_limits<T>::denorm_min();
+    CHECK(edge_segments(rows, columns, a, b, tiny, 6) == 6);
+    CHECK(split_deviation(rows, columns, a, b, 6, T(9)) > tiny);
+    CHECK(edge_segments(rows, columns, a, a, T(1e-4), 8) == 1);
+    CHECK(edge_segments(rows, columns, a, b, T(1e-4), 1) == 1);
 }
 
-TEST_CASE("memory and sizes that do not fit are refused") {
-    const std::array<float, 4> nodes{0.0f, 0.5f, 0.75f, 1.0f};
-    const table_view<float> table{nodes, 3, 1};
-    std::vector<float> memory(bend_nodes(8));
-    table_view<float> bends;
-    CHECK(build_bends(table, table, 8, std::span<float>(memory), bends) == status::ok);
-    CHECK(bends.rows == 15);
-    for (const int blocks : {-1, 0, 1, 3, 12, 128, 16}) {
-        CHECK(build_bends(table, table, blocks, std::span<float>(memory), bends) ==
-              status::buffer_too_small);
-        CHECK(bends.nodes.empty());
+TEMPLATE_TEST_CASE("positions that are no numbers are clamped to the map", "", float, double) {
+    using T = TestType;
+    const warp_tables<T> t = straight_tables<T>(8);
+    const table_view<T> rows = t.rows.view(), columns = t.columns.view();
+    const T nan = std::numeric_limits<T>::quiet_NaN();
+    const T huge = std::numeric_limits<T>::max();
+    for (const T x : {nan, huge, -huge, std::numeric_limits<T>::infinity(), T(2)}) {
+        for (const T y : {nan, huge, T(0.5)}) {
+            const glm::vec<2, T> p(x, y), q(y, x);
+            CHECK(edge_deviation(rows, columns, p, q, T(9)) <= T(1));
+            const warped_hull<T> hull =
+                hull_of_triangle(rows, columns, p, q, glm::vec<2, T>(T(0.5), T(0.2)), T(0));
+            CHECK(hull.area >= T(0));
+            CHECK(hull.area <= T(4));
+        }
     }
-    CHECK(build_bends(table_view<float>{nodes, 4, 1}, table, 8, std::span<float>(memory), bends) ==
-          status::buffer_too_small);
 }

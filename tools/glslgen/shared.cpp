@@ -83,22 +83,15 @@ template vec2 warpshadow::unwarp_floor<float, float>(const table&, const table&,
 template mat2 warpshadow::jacobian<float, float>(const table&, const table&, vec2);
 template vec4 warpshadow::warp_clip<float, float>(const table&, const table&, vec4);
 
-// tessellation
-template float warpshadow::bend_of_block<float, float>(const table&, const table&, int, int, int);
-template int warpshadow::bend_unit<float, float>(const table&, const table&);
-template float warpshadow::bend_of_surroundings<float>(const table&, int, int, int, int);
-template float warpshadow::edge_deviation<float>(const table&, vec2, vec2);
-template bool warpshadow::edge_needs_cut<float>(const table&, vec2, vec2, float);
-template bool warpshadow::edge_departs<float, float>(const table&, const table&, const table&, vec2,
-                                                     vec2, float);
-template int warpshadow::edge_segments<float>(const table&, vec2, vec2, float, int);
-template float warpshadow::split_deviation<float>(const table&, vec2, vec2, int);
-
-// edge_walk, warped_hull
+// edge_walk, warped_hull, tessellation
 template float warpshadow::edge_deviation<float, float>(const table&, const table&, vec2, vec2,
                                                         float);
 template warpshadow::warped_hull<float>
 warpshadow::hull_of_triangle<float, float>(const table&, const table&, vec2, vec2, vec2, float);
+template bool warpshadow::edge_needs_cut<float, float>(const table&, const table&, vec2, vec2,
+                                                       float);
+template int warpshadow::edge_segments<float, float>(const table&, const table&, vec2, vec2, float,
+                                                     int);
 
 // warp_build
 template float warpshadow::warp_node<float, unsigned>(unsigned, unsigned, int, int, float);
