@@ -1,6 +1,9 @@
 #include "lab/scene_detail.hpp"
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lab {
 
@@ -60,6 +63,7 @@ void refine(scene& world, std::size_t corners) {
     for (std::size_t& part : world.parts) {
         part *= pieces;
     }
+    world.name += ":" + std::to_string(3 * world.triangles.size());
 }
 
 } // namespace lab

@@ -197,6 +197,31 @@ def check_spot_and_point():
     assert 0 < by_name["min-sm"]["maps"] < 6 and by_name["dv"]["maps"] == 6
 
 
+def check_virtual_lights():
+    """Virtual lights: every way to draw their maps, and no map that culling could leave out."""
+    done = run("--preset", "vpl:3000", "--map", "32", "--repeat", "1", "--out", "vpl")
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    (record,) = json.loads((scratch / "vpl" / "results.json").read_text())["vpl"]
+    assert (record["scene"], record["points"], record["map"]) == ("interior", 3000, 32)
+    maps = {way["way"]: way["maps"] for way in record["ways"]}
+    assert list(maps) == ["cube6", "cube6-efc", "dpsm", "dpsm-pc"]
+    assert all(m == 6 for m in maps["cube6"]) and all(m == 2 for m in maps["dpsm"])
+    assert all(m <= 5 for m in maps["cube6-efc"]) and all(m == 1 for m in maps["dpsm-pc"])
+    assert all(t > 0 for way in record["ways"] for t in way["ms"])
+    assert {len(way["ms"]) for way in record["ways"]} == {len(maps["cube6"])}
+    assert (scratch / "vpl" / "report.html").read_text().count("<svg") == 1
+
+
+def check_finer_scene():
+    """Triangles are cut into k² equal ones: the surfaces, and hence the shadows, stay."""
+    fine = report("fine", "--scene", "leaves:660000", "--methods", "sm", "--map", "64")
+    plain = report("plain", "--scene", "leaves", "--methods", "sm", "--map", "64")
+    (one,), (other,) = fine["runs"], plain["runs"]
+    assert one["triangles"] == 4 * other["triangles"]
+    assert one["scene"] == f"leaves:{3 * one['triangles']}"
+    assert abs(one["wrong_pixel_ratio"] - other["wrong_pixel_ratio"]) < 0.01
+
+
 def check_paths():
     """A camera that moves: frame by frame, and against what must hold for any camera."""
     arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,raytraced", "--map", "64"]
@@ -379,6 +404,8 @@ check_folders()
 check_every_method()
 check_spot_and_point()
 check_paths()
+check_virtual_lights()
+check_finer_scene()
 check_biases()
 check_figures()
 check_files_as_scenes()
