@@ -2,6 +2,7 @@
 //
 // A scene of 261,000 triangles, seen at 1024² pixels. Every round draws the G-buffer once and runs
 // every pipeline once, so that all share whatever the machine is doing; medians over the rounds.
+// The inverse of all texel centres follows, by strips of a column and by a search for each texel.
 // Usage: passes_bench [rounds] [part of a line's name, such as "tables 128"]
 #include "gl/context.hpp"
 #include "gl/mesh.hpp"
@@ -280,6 +281,47 @@ void main()
 )");
 };
 
+/// Each texel's centre by itself: two bisections.
+constexpr const char* unwarp_each = R"(
+layout(local_size_x = 16, local_size_y = 8) in;
+layout(rg32f, binding = 0) uniform writeonly image2D centres;
+layout(binding = WS_BINDING_ROWS) uniform sampler2D rows;
+layout(binding = WS_BINDING_COLUMNS) uniform sampler2D columns;
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (all(lessThan(texel, imageSize(centres)))) {
+        vec2 q = (vec2(texel) + 0.5) / vec2(imageSize(centres));
+        imageStore(centres, texel, vec4(ws_unwarp(rows, columns, q), 0.0, 0.0));
+    }
+}
+)";
+
+/// Inverse of all texel centres of a map; `strip` texels of a column by each invocation, 0 for a
+/// search of its own for each texel.
+pipeline make_centres(std::list<gl::program>& kept, std::list<gl::texture>& maps, tables& from,
+                      int map, int strip) {
+    const std::string bindings = "#define WS_BINDING_ROWS 2\n#define WS_BINDING_COLUMNS 3\n"
+                                 "#include \"warpshadow/warp.glsl\"\n";
+    const gl::program& unwarp = kept.emplace_back(
+        strip > 0 ? compute("#define WS_CENTRES_STRIP " + std::to_string(strip) + "\n" + bindings +
+                            "#include \"passes/unwarp_centres.glsl\"\n")
+                  : compute(bindings + unwarp_each));
+    const gl::texture& centres = maps.emplace_back(GL_RG32F, map, map);
+    pipeline result;
+    result.name = "centres " + std::to_string(map) + " of " + std::to_string(from.counts.width()) +
+                  ", strips of " + std::to_string(strip);
+    result.steps = {{"centres", [&unwarp, &centres, &from, map, strip] {
+                         from.rows.bind(2);
+                         from.columns.bind(3);
+                         centres.bind_image(0, GL_WRITE_ONLY);
+                         unwarp.dispatch(map, strip > 0 ? (map + strip - 1) / strip : map);
+                         wait_for_writes();
+                     }}};
+    result.times.resize(result.steps.size());
+    return result;
+}
+
 int blocks_along(int every) {
     return (view + 2 * every - 1) / (2 * every);
 }
@@ -363,6 +405,23 @@ int run(int rounds, const std::string& part) {
             }
         }
     }
+    const std::size_t table_lines = all.size();
+    std::list<gl::program> kept;
+    std::list<gl::texture> maps;
+    for (tables& from : sizes) {
+        const int cells = from.counts.width();
+        pipeline fill = make_pipeline(with, bounds, from, 1);
+        for (const int strip : {0, 4, 16, 64}) {
+            pipeline made = make_centres(kept, maps, from, cells, strip);
+            if (cells >= 512 && cells <= 2048 && made.name.find(part) != std::string::npos) {
+                if (!fill.steps.empty()) {
+                    time_once(fill, b.watch);
+                    fill.steps.clear();
+                }
+                all.push_back(std::move(made));
+            }
+        }
+    }
     std::size_t covered = 0;
     for (const glm::vec4& p : b.position.read<glm::vec4>()) {
         covered += p.w != 0.0f ? 1 : 0;
@@ -398,6 +457,14 @@ int run(int rounds, const std::string& part) {
     }
     std::printf("\n");
     for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i == table_lines) {
+            std::printf("%-36s%9s%9s\n", "centres of texels", "ms", "ratio");
+        }
+        if (i >= table_lines) {
+            std::printf("%-36s%9.2f%9.3f\n", all[i].name.c_str(), median(all[i].sums),
+                        median(ratios[i]));
+            continue;
+        }
         std::printf("%-26s", all[i].name.c_str());
         for (const std::vector<double>& times : all[i].times) {
             std::printf("%9.2f", median(times));

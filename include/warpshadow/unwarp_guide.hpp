@@ -93,48 +93,14 @@ bool fits(const guide_view& guide, const table_view<T, Node>& table) {
 template <typename T, typename Node>
 T axis_inverse_offset(const table_view<T, Node>& table, const guide_view& guide,
                       const row_blend<T>& blend, T image) {
-    const int cells = table.cells;
-    const T clamped = clamp_to_unit(image);
-    const int step = glm::clamp(int(clamped * T(guide.steps)), 0, guide.steps - 1);
+    const int step = glm::clamp(int(clamp_to_unit(image) * T(guide.steps)), 0, guide.steps - 1);
     const std::size_t stride = static_cast<std::size_t>(guide.steps) + 1;
     const auto guided = [&](int row) {
-        return guide.cells.data() + static_cast<std::size_t>(row) * stride +
-               static_cast<std::size_t>(step);
+        return int(
+            guide.cells[static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(step)]);
     };
-    const std::uint16_t* const first = guided(blend.row0);
-    const std::uint16_t* const second = guided(blend.row1);
-    int below = glm::min(glm::min(int(first[0]), int(second[0])), cells - 1);
-    int above = glm::clamp(glm::max(int(first[1]), int(second[1])) + 1, below + 1, cells);
-    T node0 = blended_node(table, blend, below);
-    T node1 = blended_node(table, blend, above);
-    // rounding of the step, or a guide that is not the table's
-    while (below > 0 && node0 > clamped) {
-        above = below;
-        node1 = node0;
-        --below;
-        node0 = blended_node(table, blend, below);
-    }
-    while (above < cells && node1 <= clamped) {
-        below = above;
-        node0 = node1;
-        ++above;
-        node1 = blended_node(table, blend, above);
-    }
-    while (above - below > 1) {
-        const int middle = (below + above) / 2;
-        const T node = blended_node(table, blend, middle);
-        if (node <= clamped) {
-            below = middle;
-            node0 = node;
-        } else {
-            above = middle;
-            node1 = node;
-        }
-    }
-    const T offset0 = node0 - T(below) / T(cells);
-    const T offset1 = node1 - T(above) / T(cells);
-    const T t = node1 > node0 ? glm::clamp((clamped - node0) / (node1 - node0), T(0), T(1)) : T(0);
-    return -(offset0 + t * (offset1 - offset0));
+    int cell = glm::min(guided(blend.row0), guided(blend.row1));
+    return axis_inverse_offset_near(table, blend, image, cell);
 }
 
 /// Position whose warp is q, found with guides: `unwarp` for many points.

@@ -163,6 +163,20 @@ T axis_slope(const table_view<T, Node>& table, const row_blend<T>& blend, T x) {
     return (blended_node(table, blend, k + 1) - blended_node(table, blend, k)) * T(cells);
 }
 
+/// Offset F⁻¹(X) − X in the cell that holds X.
+///
+/// @param node0,node1 F at the ends of the cell
+/// @param cell  its number, 0 ≤ cell < cells
+/// @param cells of the function
+/// @param image value X of the function, node0 ≤ X ≤ node1; clamped to that
+template <typename T> T inverse_offset_in_cell(T node0, T node1, int cell, int cells, T image) {
+    T offset0 = node0 - T(cell) / T(cells);
+    T offset1 = node1 - T(cell + 1) / T(cells);
+    // a cell of no extent is hit only by a table that does not increase: its left end is returned
+    T t = node1 > node0 ? glm::clamp((image - node0) / (node1 - node0), T(0), T(1)) : T(0);
+    return -(offset0 + t * (offset1 - offset0));
+}
+
 /// Offset F⁻¹(X) − X of the inverse of a blended function.
 ///
 /// Finds the cell by bisection and solves in it; no inverse table is interpolated. The error in x
@@ -189,11 +203,59 @@ T axis_inverse_offset(const table_view<T, Node>& table, const row_blend<T>& blen
             node1 = node;
         }
     }
-    T offset0 = node0 - T(below) / T(cells);
-    T offset1 = node1 - T(above) / T(cells);
-    // a cell of no extent is hit only by a table that does not increase: its left end is returned
-    T t = node1 > node0 ? glm::clamp((clamped - node0) / (node1 - node0), T(0), T(1)) : T(0);
-    return -(offset0 + t * (offset1 - offset0));
+    return inverse_offset_in_cell(node0, node1, below, cells, clamped);
+}
+
+/// Offset F⁻¹(X) − X of the inverse of a blended function, searched from a cell nearby.
+///
+/// What `axis_inverse_offset` gives, to the bit, where the blended nodes increase, by steps that
+/// double until X is between them: a few look-ups if the start is good, twice those of a bisection
+/// if it is not.
+/// @param table functions of one axis, increasing
+/// @param blend from `blend_rows` or `floor_row`
+/// @param image value X of the function; clamped to [0, 1]
+/// @param cell  where to start; receives the cell that was found
+template <typename T, typename Node>
+T axis_inverse_offset_near(const table_view<T, Node>& table, const row_blend<T>& blend, T image,
+                           int& cell) {
+    int cells = table_cells(table);
+    T clamped = clamp_to_unit(image);
+    int below = glm::clamp(cell, 0, cells - 1);
+    int above = below + 1;
+    T node0 = blended_node(table, blend, below);
+    T node1 = node0;
+    int stride = 1;
+    if (node0 <= clamped || below == 0) {
+        node1 = blended_node(table, blend, above);
+        while (node1 <= clamped && above < cells) {
+            stride *= 2;
+            below = above;
+            node0 = node1;
+            above = glm::min(above + stride, cells);
+            node1 = blended_node(table, blend, above);
+        }
+    } else {
+        while (node0 > clamped && below > 0) {
+            above = below;
+            node1 = node0;
+            below = glm::max(below - stride, 0);
+            node0 = blended_node(table, blend, below);
+            stride *= 2;
+        }
+    }
+    while (above - below > 1) {
+        int middle = (below + above) / 2;
+        T node = blended_node(table, blend, middle);
+        if (node <= clamped) {
+            below = middle;
+            node0 = node;
+        } else {
+            above = middle;
+            node1 = node;
+        }
+    }
+    cell = below;
+    return inverse_offset_in_cell(node0, node1, below, cells, clamped);
 }
 
 /// Displacement warp(p) − p, continuous on the whole plane.

@@ -11,6 +11,7 @@
 #include <warpshadow/cube.hpp>
 #include <warpshadow/cull.hpp>
 #include <warpshadow/edge_walk.hpp>
+#include <warpshadow/filter.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/focus.hpp>
 #include <warpshadow/frustum.hpp>

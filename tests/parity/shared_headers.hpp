@@ -6,6 +6,7 @@
 #include <warpshadow/clip_space.hpp>
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/cube.hpp>
+#include <warpshadow/filter.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
 #include <warpshadow/importance_functions.hpp>

@@ -135,6 +135,33 @@ TEMPLATE_TEST_CASE("J36: flat floors, steep steps, and neighbours that pull to o
     }
 }
 
+TEMPLATE_TEST_CASE("a search from any cell is the bisection, to the bit, and says where it ended",
+                   "", (stored<float, float>), (stored<double, double>),
+                   (stored<float, std::uint16_t>)) {
+    using T = typename TestType::T;
+    using Node = typename TestType::Node;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const int cells = d.size(2000);
+        const int rows = d.between(1, 6);
+        const auto table = any_guided<T, Node>(d, cells, rows, safe_floor<T, Node>(d, cells));
+        int cell = d.coin() ? static_cast<int>(d.bits()) : d.between(-1, cells);
+        for (int i = 0; i < 40; ++i) {
+            const row_blend<T> blend = blend_rows(static_cast<T>(d.unit()), rows);
+            const T image = any_image<T>(d, cells, table.steps);
+            RC_ASSERT(same(axis_inverse_offset_near(table.view(), blend, image, cell),
+                           axis_inverse_offset(table.view(), blend, image)));
+            RC_ASSERT(cell >= 0 && cell < cells);
+            const T inside = clamp_to_unit(image);
+            RC_ASSERT(blended_node(table.view(), blend, cell) <= inside);
+            RC_ASSERT(cell + 1 == cells || blended_node(table.view(), blend, cell + 1) > inside);
+            if (d.between(0, 3) == 0) {
+                cell = static_cast<int>(d.bits());
+            }
+        }
+    }));
+}
+
 TEMPLATE_TEST_CASE("at the smallest floor, where blends may tie, the answer is an inverse", "",
                    float, double) {
     using T = TestType;

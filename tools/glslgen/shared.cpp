@@ -5,6 +5,7 @@
 #include <warpshadow/clip_space.hpp>
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/cube.hpp>
+#include <warpshadow/filter.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/importance.hpp>
 #include <warpshadow/importance_functions.hpp>
@@ -78,6 +79,8 @@ template warpshadow::row_blend<float> warpshadow::floor_row<float>(float, int);
 template vec2 warpshadow::warp_offset<float, float>(const table&, const table&, vec2);
 template vec2 warpshadow::warp<float, float>(const table&, const table&, vec2);
 template vec2 warpshadow::unwarp<float, float>(const table&, const table&, vec2);
+template float warpshadow::axis_inverse_offset_near<float, float>(
+    const table&, const warpshadow::row_blend<float>&, float, int&);
 template vec2 warpshadow::warp_floor<float, float>(const table&, const table&, vec2);
 template vec2 warpshadow::unwarp_floor<float, float>(const table&, const table&, vec2);
 template mat2 warpshadow::jacobian<float, float>(const table&, const table&, vec2);
@@ -116,6 +119,16 @@ template bool warpshadow::linear_depth_allowed<float>(float, float, float);
 template axes warpshadow::texel_axes_at<float>(const mat4&, const mat2&, vec3, vec2);
 template float warpshadow::normal_offset<float>(vec3, const axes&, float);
 template vec2 warpshadow::filter_radii<float>(const axes&, float);
+
+// filter
+template vec2 warpshadow::kernel_tap<float>(int, int, vec2);
+template float warpshadow::kernel_weight<float>(vec2, float);
+template int warpshadow::kernel_taps<float>(vec2, int);
+template vec2 warpshadow::kernel_radii<float>(const axes&, float, float);
+template vec2 warpshadow::tap_in_texels<float>(vec2, vec2, float, vec2);
+template vec2 warpshadow::tap_in_light<float, float>(const table&, const table&, vec2, vec2, vec2);
+template vec2 warpshadow::tap_by_jacobian<float>(vec2, const mat2&, vec2, vec2);
+template vec2 warpshadow::kernel_reach<float>(const mat2&, vec2, vec2);
 
 // cube
 template warpshadow::cube_point<float> warpshadow::cube_lookup<float>(const vec3&);

@@ -96,11 +96,7 @@ void inverse_offsets(const table_view<T, Node>& table, const guide_view& guide, 
             offset[i] = axis_inverse_offset(table, guide, blend[i], image[i]);
             continue;
         }
-        const T offset0 = node0 - T(below[i]) / T(cells);
-        const T offset1 = node1 - T(above) / T(cells);
-        const T t =
-            node1 > node0 ? glm::clamp((clamped[i] - node0) / (node1 - node0), T(0), T(1)) : T(0);
-        offset[i] = -(offset0 + t * (offset1 - offset0));
+        offset[i] = inverse_offset_in_cell(node0, node1, below[i], cells, clamped[i]);
     }
 }
 
