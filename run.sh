@@ -17,10 +17,7 @@ usage: ./run.sh [--no-install] [-j N] COMMAND
   nightly    unit and property tests at -O0 to -O3 with fresh seeds; builds the benchmarks
   bench ...  build the benchmarks and run all, or the named one with the arguments that follow
   docs       build the reference in build/docs
-  first-light  measure again what the first block of README.md shows, and write it
-  figures    measure again what docs/bias.md shows of Scherzer's figures, and write it
-  geometry   measure again what docs/geometry.md shows, and write it; wants an idle machine
-  point-lights  measure again what docs/point-lights.md shows, and write it
+  measure PAGE  measure again what docs/PAGE shows, and write it (without PAGE: lists them)
   help       this text
 
   --no-install   never install a Debian package; say which are missing instead
@@ -248,84 +245,20 @@ command_docs() {
     printf 'build/docs/html/index.html\n'
 }
 
-command_first-light() {
-    local folder=$root/docs/first-light
-    lab --methods sm,dv,fitted,notw,raytraced --out "$root/build/first-light"
-    cp "$root/build/first-light/results.json" "$folder/results.json"
-    local method
-    for method in sm notw; do
-        cp "$root/build/first-light/outdoor-c0-l0-m512-$method.png" "$folder/outdoor-$method.png"
-    done
-    python3 "$folder/write_readme.py"
-}
-
-command_figures() {
-    local folder=$root/docs/bias figure
-    for figure in figure6 figure8; do
-        lab --preset "$figure" --out "$root/build/$figure"
-        cp "$root/build/$figure/results.json" "$folder/$figure.json"
-    done
-    python3 "$folder/write_page.py"
-}
-
-command_geometry() {
-    need build lab samples test bench
-    local folder=$root/docs/geometry out=$root/build/geometry name
-    local bench=$root/build/release/bench
-    mkdir -p "$out"
-    (cd "$root" && cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON) >/dev/null
-    for name in geometry_failures geometry_fits geometry_bench geometry_bench_native; do
-        printf 'building %s ...\n' "$name"
-        release "bench_$name"
-    done
-    "$bench/geometry_fits" "$folder/fits.json" "$folder/fit.svg"
-    printf 'counting failures ...\n'
-    WARPSHADOW_SETS=400 "$bench/geometry_failures" "$out/failures.md" "$folder/failures.json"
-    for name in geometry_bench geometry_bench_native; do
-        printf 'timing %s ...\n' "$name"
-        "$bench/$name" --benchmark_enable_random_interleaving=true --benchmark_repetitions=15 \
-            --benchmark_min_time=0.02 --benchmark_out="$out/$name.json" >/dev/null
-    done
-    python3 "$folder/collect.py" speed "$out/geometry_bench.json" "$out/geometry_bench_native.json"
-    lab --methods sm,stable,min-sm,dv --out "$out"
-    python3 "$folder/collect.py" frames "$out/results.json"
-    python3 "$folder/write_page.py"
-}
-
-command_point-lights() {
-    local folder=$root/docs/point-lights out=$root/build/point-lights name
-    need build lab samples test bench
+# measure PAGE: sources docs/PAGE/measure.sh, with $folder for what is kept and $out for the rest.
+command_measure() {
+    local page=${1-} pages
+    pages=$(cd "$root/docs" && printf '%s\n' */measure.sh | sed 's|/measure.sh||')
+    if [[ -z $page ]]; then
+        printf '%s\n' "$pages"
+        return
+    fi
+    grep -qx -- "$page" <<<"$pages" || die "measure: no page $page (there are: ${pages//$'\n'/, })"
+    local folder=$root/docs/$page out=$root/build/measure/$page
     rm -rf "$out"
     mkdir -p "$out"
-    printf 'building the lab, two benchmarks and two tests ...\n'
-    (cd "$root" && cmake --preset release -D WARPSHADOW_BUILD_BENCH=ON && cmake --preset ci) >/dev/null
-    release bench_omni_culling
-    release bench_omni_culling_native
-    (cd "$root" && cmake --build --preset ci --parallel "$jobs" --target property_cull_test lab_omni) \
-        >/dev/null
-    # The paper's walk, with a light above the views; and a lamp that most views see.
-    local six=cube6,cube6-cull,cube6-efc,dpsm,dpsm-cull,dpsm-pc
-    local walk=(--path walk --view 320x240)
-    local above=point:-1.9,2.7,1.6 lamp=point:0.2,1.97,-0.1
-    lab "${walk[@]}" --scene interior:600000 --light=$above --frames 20 --map 1024,2048 \
-        --methods $six --out "$out/walk-600k"
-    lab "${walk[@]}" --scene interior:600000 --light=$lamp --frames 10 --map 1024 \
-        --methods $six --out "$out/walk-lamp"
-    lab "${walk[@]}" --scene interior:3000000 --light=$above --frames 4 --map 1024 \
-        --methods $six,cube6-gs,cube6-cull-gs,dpsm-gs,dpsm-cull-gs --out "$out/walk-3m"
-    lab --preset vpl:100000 --out "$out/vpl-100k"
-    lab --preset vpl:3000000 --out "$out/vpl-3m"
-    for name in omni_culling omni_culling_native; do
-        "$root/build/release/bench/$name" --benchmark_filter='six_faces|^pair_' \
-            --benchmark_enable_random_interleaving=true --benchmark_repetitions=5 \
-            --benchmark_min_time=0.05 --benchmark_format=json >"$out/$name.json"
-    done
-    # 26 classes and types: over a million pairs
-    WARPSHADOW_TEST_PAIRS=40000 "$root/build/ci/tests/property/cull_test" \
-        'peers 35, J48*' >"$out/oracle.txt"
-    "$root/build/ci/tests/lab/lab_omni" 'no edge of a cut scene*' >"$out/chord.txt"
-    python3 "$folder/collect.py" "$out"
-    python3 "$folder/write_page.py"
+    # shellcheck source=/dev/null
+    source "$folder/measure.sh"
 }
 
 command_help() {
@@ -345,15 +278,14 @@ while (($#)); do
         shift
         ;;
     -h | --help) command=help ;;
-    lab | view | bench)
+    lab | view | bench | measure)
         # The rest belongs to the program.
         command=$1
         shift
         arguments=("$@")
         break
         ;;
-    demo | test | nightly | docs | first-light | figures | point-lights | help) command=$1 ;;
-    geometry) command=$1 ;;
+    demo | test | nightly | docs | help) command=$1 ;;
     *) die "unknown argument $1 (./run.sh help)" ;;
     esac
     shift

@@ -4,7 +4,7 @@
 usage: docs/bias/write_page.py [--check]
 
 With --check nothing is written; the exit code tells whether the tables are what the results say.
-The results come from `./run.sh figures`.
+The results come from `./run.sh measure bias`.
 """
 
 import json

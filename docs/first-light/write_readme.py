@@ -4,7 +4,7 @@
 usage: docs/first-light/write_readme.py [--check]
 
 With --check nothing is written; the exit code tells whether the block is what the results say.
-The results and pictures come from `./run.sh first-light`.
+The results and pictures come from `./run.sh measure first-light`.
 """
 
 import json
@@ -53,7 +53,7 @@ def block():
         "",
         f"{width} × {height} pixels, {side}² texels, against ray-traced shadows; the frame is everything "
         f"from the G-buffer to the shadow test, on {results['device']['renderer']}, which is "
-        "a processor and no GPU. Written by `./run.sh first-light`.",
+        "a processor and no GPU. Written by `./run.sh measure first-light`.",
         "",
     ]
     return "\n".join(lines)

@@ -5,7 +5,7 @@ usage: docs/geometry/collect.py speed O2.json NATIVE.json    writes docs/geometr
        docs/geometry/collect.py frames RESULTS.json          writes docs/geometry/frames.json
 
 The inputs are the output of `geometry_bench` and `geometry_bench_native` (--benchmark_out), and
-results.json of warpshadow-lab. `./run.sh geometry` makes them.
+results.json of warpshadow-lab. `./run.sh measure geometry` makes them.
 """
 
 import json

@@ -4,7 +4,7 @@
 usage: docs/geometry/write_page.py [--check]
 
 With --check nothing is written; the exit code tells whether the tables are what the results say.
-The results come from `./run.sh geometry`.
+The results come from `./run.sh measure geometry`.
 """
 
 import json

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Brings what `./run.sh point-lights` measured together in docs/point-lights/measured.json.
+"""Brings what `./run.sh measure point-lights` measured together in docs/point-lights/measured.json.
 
 usage: docs/point-lights/collect.py FOLDER
 

@@ -4,7 +4,7 @@
 usage: docs/point-lights/write_page.py [--check]
 
 With --check nothing is written; the exit code tells whether page and plots are what the file says.
-It comes from `./run.sh point-lights`.
+It comes from `./run.sh measure point-lights`.
 """
 
 import json
