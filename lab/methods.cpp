@@ -101,6 +101,9 @@ struct renderer::state {
             }
             if (how.warp) {
                 gpu.build_tables(maps, i, count);
+                if (!how.omni.hemispheres) {
+                    weakened = warped.weaken(maps, i);
+                }
                 draw_warped(how, request, maps, i, count);
             } else {
                 gpu.timed_pass("shadow map", [&] {
@@ -261,6 +264,7 @@ struct renderer::state {
     g_buffer seen, seen_before;
     std::vector<double> fit_us;     ///< times of the projective fit alone
     std::vector<double> culling_us; ///< times of sorting objects to the maps of a point light
+    double weakened = 0.0;          ///< share of the identity in the last tables
     bool remembers = false;
     // kept while a camera moves, so that frames do not begin with allocations
     std::map<std::string, map_resources, std::less<>> moving_maps;
@@ -386,6 +390,10 @@ method_result renderer::run(std::string_view name, const view_request& request) 
             result.cpu_setup_us.emplace_back("cut triangles, once per light",
                                              1e3 * s.omni.cutting_ms());
         }
+    }
+    if (how.warp) {
+        result.weakened = s.weakened;
+        result.mean_side = static_cast<double>(s.warped.mean_side());
     }
     result.status = s.guards(how, chosen, maps);
     std::vector<glm::vec4> extents; // before the pictures, which draw with a map of everything

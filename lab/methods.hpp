@@ -77,7 +77,9 @@ struct method_result {
     std::size_t triangles; ///< rasterised into the shadow maps
     int maps;              ///< shadow maps drawn
     double angle;          ///< of the map's sides to the axes of the light, radians
-    std::vector<std::string> status;    ///< names of the guards that fired
+    std::optional<double> weakened;  ///< share of the identity in the last map's tables
+    std::optional<double> mean_side; ///< predicted side of a texel, to one without tables
+    std::vector<std::string> status; ///< names of the guards that fired
     std::optional<texel_metric> texels; ///< of methods whose maps have a matrix
     std::vector<named_picture> pictures;
     std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for

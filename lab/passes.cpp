@@ -314,6 +314,11 @@ void passes::build_tables(map_resources& maps, std::size_t index, bool keep_coun
     warp.rows.bind(unit_rows);
     build_axis(maps, index, true, keep_counts);
     warp.columns.bind(unit_columns);
+    find_centres(maps, index);
+}
+
+void passes::find_centres(map_resources& maps, std::size_t index) {
+    const map_resources::tables& warp = maps.warps[index];
     timed_pass("unwarp centres", [&] {
         warp.centres.bind_image(0, GL_WRITE_ONLY);
         unwarp_centres_.dispatch(warp.centres.width(), warp.centres.height());

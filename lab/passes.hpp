@@ -84,6 +84,8 @@ class passes {
     void warp_map(std::size_t index, const glm::dmat4& warp);
     /// Importance of one map, and the functions of both axes.
     void build_tables(map_resources& maps, std::size_t index, bool keep_counts);
+    /// Where the centres of the texels of one map with tables lie before the warp.
+    void find_centres(map_resources& maps, std::size_t index);
     void draw_plain_map(map_resources& maps, std::size_t index);
     /// Shadow test of all samples in use.
     void test_shadows(map_resources& maps, const light_maps& chosen, bool warped);

@@ -85,6 +85,10 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     json["triangles"] = r.triangles;
     json["maps"] = r.maps;
     json["angle_degrees"] = glm::degrees(r.angle);
+    if (r.weakened) {
+        json["weakened"] = *r.weakened;
+        json["predicted_texel_side"] = number_or_null(r.mean_side);
+    }
     json["status"] = r.status;
     return json;
 }

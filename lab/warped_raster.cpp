@@ -2,6 +2,8 @@
 
 #include "lab/truth.hpp"
 
+#include <warpshadow/warp_strength.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -25,7 +27,14 @@ constexpr std::size_t piece_bytes = 32;
 constexpr std::size_t most_pieces = std::size_t{1} << 23;
 
 /// Buffer bindings of the shaders.
-enum binding : GLuint { on_counts = 6, on_ready = 7, on_waiting = 8, on_next = 9, on_source = 10 };
+enum binding : GLuint {
+    on_sides = 5,
+    on_counts = 6,
+    on_ready = 7,
+    on_waiting = 8,
+    on_next = 9,
+    on_source = 10
+};
 
 struct kind_name {
     std::string_view name;
@@ -78,7 +87,8 @@ std::string raster_name(const raster_choice& choice) {
 }
 
 warped_raster::warped_raster(passes& gpu)
-    : gpu_(gpu), counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW) {
+    : gpu_(gpu), counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW),
+      sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
     const std::vector<std::string> names{
         "RASTER_RULE " + std::to_string(static_cast<int>(raster_kind::rule)),
         "RASTER_BOUND " + std::to_string(static_cast<int>(raster_kind::bound)),
@@ -88,6 +98,9 @@ warped_raster::warped_raster(passes& gpu)
     draw_interpolated_ = gpu_.link("shadow_warped.vert", "empty.frag", {"INTERPOLATED"});
     draw_fragment_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag");
     draw_exact_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag", {"COVERAGE"});
+    predict_ = gpu_.compute("predict_gain.comp");
+    passes::set_units(predict_);
+    weaken_ = gpu_.compute("weaken_table.comp");
     const std::size_t triangles = gpu_.world().triangles.size();
     sources_ =
         gl::buffer((triangles + triangles / 2 + 1024) * source_bytes, nullptr, GL_DYNAMIC_COPY);
@@ -115,6 +128,35 @@ void warped_raster::prepare(std::size_t index, int size, const raster_choice& ch
         program->set("excess_floor", static_cast<float>(excess_texels / (texels * texels)));
         program->set("excess_share", static_cast<float>(excess_share));
     }
+}
+
+double warped_raster::weaken(map_resources& maps, std::size_t index) {
+    float share = 0.0f;
+    gpu_.timed_pass("weaken", [&] {
+        sides_.fill(0);
+        sides_.bind_base(GL_SHADER_STORAGE_BUFFER, on_sides);
+        passes::bind_tables(maps, index);
+        predict_.set("map_index", static_cast<int>(index));
+        predict_.dispatch((gpu_.view().x + 3) / 4, (gpu_.view().y + 3) / 4);
+        gl::wait_for_writes();
+        const std::vector<std::uint32_t> sides = sides_.read<std::uint32_t>();
+        mean_side_ = sides[1] == 0 ? 1.0f
+                                   : static_cast<float>(static_cast<double>(sides[0]) /
+                                                        (256.0 * static_cast<double>(sides[1])));
+        share = warpshadow::weakening(mean_side_);
+        if (share > 0.0f) {
+            weaken_.set("share", share);
+            for (const gl::texture* table : {&maps.warps[index].rows, &maps.warps[index].columns}) {
+                table->bind_image(0, GL_READ_WRITE);
+                weaken_.dispatch(table->width(), table->height());
+                gl::wait_for_writes();
+            }
+        }
+    });
+    if (share > 0.0f) {
+        gpu_.find_centres(maps, index);
+    }
+    return static_cast<double>(share);
 }
 
 void warped_raster::draw_map(map_resources& maps, std::size_t index, const raster_choice& choice,

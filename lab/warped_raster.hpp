@@ -55,6 +55,11 @@ class warped_raster {
   public:
     explicit warped_raster(passes& gpu);
 
+    /// Mixes the tables of a map with the identity as far as they win too little
+    /// (warp_strength.hpp).
+    /// @return share of the identity
+    double weaken(map_resources& maps, std::size_t index);
+
     /// Draws the scene into one map with its tables; `count` reads back how many triangles.
     /// @param rays for `raster_kind::ideal`
     void draw_map(map_resources& maps, std::size_t index, const raster_choice& choice,
@@ -67,6 +72,8 @@ class warped_raster {
     /// Of the maps drawn since they were last forgotten.
     [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
     [[nodiscard]] std::size_t list_bytes() const;
+    /// What the last tables were predicted to do to the side of the texels in view.
+    [[nodiscard]] float mean_side() const { return mean_side_; }
 
   private:
     void set_capacity(std::size_t ready, std::size_t waiting);
@@ -74,11 +81,12 @@ class warped_raster {
     void trace_map(map_resources& maps, std::size_t index, const ray_tracer& rays);
 
     passes& gpu_;
-    gl::buffer counters_, sources_, ready_;
+    gl::buffer counters_, sources_, ready_, sides_;
     std::array<gl::buffer, 2> waiting_;
     gl::vertex_array nothing_;
-    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_;
+    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_, predict_, weaken_;
     std::vector<triangle_counts> counted_;
+    float mean_side_ = 1.0f;
 };
 
 } // namespace lab

@@ -38,4 +38,5 @@
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warp_points.hpp>
+#include <warpshadow/warp_strength.hpp>
 #include <warpshadow/warped_hull.hpp>

@@ -16,6 +16,7 @@
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warp_strength.hpp>
 #include <warpshadow/warped_hull.hpp>
 
 using ivec2 = glm::vec<2, int>;
@@ -95,6 +96,11 @@ template bool warpshadow::edge_needs_cut<float, float>(const table&, const table
                                                        float);
 template int warpshadow::edge_segments<float, float>(const table&, const table&, vec2, vec2, float,
                                                      int);
+
+// warp_strength
+template float warpshadow::texel_side<float, float>(const table&, const table&, vec2);
+template float warpshadow::weakening<float>(float);
+template float warpshadow::weakened_node<float>(float, int, int, float);
 
 // warp_build
 template float warpshadow::warp_node<float, unsigned>(unsigned, unsigned, int, int, float);

@@ -1,0 +1,190 @@
+// Maps with tables as they are drawn, against an ideal map with a ray per texel.
+//
+// The triangles lie flat at depths of their own below a sun overhead, so a texel tells which of
+// them it holds. How far a map deviates is how far from a texel's centre the ideal map, evaluated
+// anywhere, has what the texel holds.
+#include "gl/context.hpp"
+#include "lab/truth.hpp"
+#include "lab/warped_raster.hpp"
+
+#include <warpshadow/warp.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+namespace ws = warpshadow;
+
+namespace {
+
+constexpr int size = 192;
+
+/// Flat triangles of all sizes; neighbours share edges where they come from one fan.
+lab::scene flat_triangles(unsigned seed) {
+    lab::scene world;
+    world.name = "flat";
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    const auto add_fan = [&](glm::vec2 centre, float radius, float height, int parts) {
+        const auto first = static_cast<unsigned>(world.positions.size());
+        world.positions.emplace_back(centre.x, height, centre.y);
+        for (int i = 0; i <= parts; ++i) {
+            const float angle =
+                6.2831853f * static_cast<float>(i % parts) / static_cast<float>(parts);
+            world.positions.emplace_back(centre.x + radius * std::cos(angle), height,
+                                         centre.y + radius * std::sin(angle));
+        }
+        for (unsigned i = 1; i <= static_cast<unsigned>(parts); ++i) {
+            world.triangles.emplace_back(first, first + i, first + i + 1);
+        }
+    };
+    for (int i = 0; i < 60; ++i) {
+        const float radius = 4.0f * std::pow(unit(random), 3.0f) + 0.05f;
+        const float height = 0.1f + 0.8f * static_cast<float>(i) / 60.0f;
+        add_fan({10.0f * unit(random), 10.0f * unit(random)}, radius, height,
+                3 + static_cast<int>(4.0f * unit(random)));
+    }
+    add_fan({5.0f, 5.0f}, 9.0f, 0.0f, 4); // the ground
+    world.box = {glm::dvec3(0.0, 0.0, 0.0), glm::dvec3(10.0, 1.0, 10.0)};
+    world.cameras.push_back({"0", {5.0, 8.0, 5.0}, {5.0, 0.0, 5.1}, 1.0});
+    world.lights.push_back({"0", ws::sun(glm::dvec3(0.0, -1.0, 0.0))});
+    return world;
+}
+
+/// Functions that crowd around a place that moves from row to row.
+std::vector<float> steep_table(double centre, double drift, double width) {
+    std::vector<float> nodes;
+    for (int row = 0; row < size; ++row) {
+        std::vector<double> sum{0.0};
+        for (int k = 0; k < size; ++k) {
+            const double x = (k + 0.5) / size - centre - drift * (row + 0.5) / size;
+            sum.push_back(sum.back() + 0.25 + 3.0 * std::exp(-x * x / (width * width)));
+        }
+        for (const double s : sum) {
+            nodes.push_back(static_cast<float>(s / sum.back()));
+        }
+    }
+    return nodes;
+}
+
+struct drawn_maps {
+    lab::scene world = flat_triangles(4);
+    lab::ray_tracer rays{world};
+    gl::headless_context context;
+    lab::passes gpu{world, {32, 24}};
+    lab::warped_raster raster{gpu};
+    lab::map_resources maps{size, 1, true};
+    lab::g_buffer seen{{32, 24}};
+    std::vector<float> rows = steep_table(0.25, 0.3, 0.06);
+    std::vector<float> columns = steep_table(0.7, -0.4, 0.09);
+    std::vector<float> ideal;
+
+    drawn_maps() {
+        const lab::light_maps chosen = lab::whole_scene_maps(world, world.lights.front());
+        gpu.use(seen, chosen, world.lights.front().light);
+        maps.warps.front().rows.write(rows.data());
+        maps.warps.front().columns.write(columns.data());
+        lab::passes::bind_tables(maps, 0);
+        gpu.find_centres(maps, 0);
+        ideal = draw({lab::raster_kind::ideal, 0.0});
+    }
+    std::vector<float> draw(const lab::raster_choice& how) {
+        do {
+            raster.forget_counts();
+            raster.draw_map(maps, 0, how, &rays, true);
+        } while (raster.grow_lists());
+        gl::check("warped map");
+        return maps.depth.read<float>();
+    }
+    std::size_t triangles() const { return raster.counted().front().vertex_count / 3; }
+
+    /// Largest distance in texels, of the radii, that some texel needs; infinity where none serves.
+    double deviation(const std::vector<float>& map, const std::vector<double>& radii) const {
+        const ws::table_view<float> row_view{rows, size, size}, column_view{columns, size, size};
+        const glm::dmat4 inverse = glm::inverse(glm::dmat4(gpu.matrix_in_use(0)));
+        double most = 0.0;
+        for (int i = 0; i < size * size; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            if (std::abs(map[at] - ideal[at]) < 1e-4f) {
+                continue;
+            }
+            double needed = INFINITY;
+            for (const double radius : radii) {
+                std::vector<glm::dvec3> from, to;
+                for (int k = 0; k < 32; ++k) {
+                    const double angle = 0.19634954 * k;
+                    const glm::vec2 q =
+                        (glm::vec2(static_cast<float>(i % size), static_cast<float>(i / size)) +
+                         0.5f +
+                         glm::vec2(static_cast<float>(radius * std::cos(angle)),
+                                   static_cast<float>(radius * std::sin(angle)))) /
+                        static_cast<float>(size);
+                    const glm::dvec2 ndc =
+                        2.0 * glm::dvec2(ws::unwarp(row_view, column_view, q)) - 1.0;
+                    const glm::dvec4 begin = inverse * glm::dvec4(ndc, -1.0, 1.0);
+                    const glm::dvec4 end = inverse * glm::dvec4(ndc, 1.0, 1.0);
+                    from.emplace_back(glm::dvec3(begin) / begin.w);
+                    to.emplace_back(glm::dvec3(end) / end.w);
+                }
+                const std::vector<double> hits = rays.first_hits(from, to);
+                if (std::any_of(hits.begin(), hits.end(), [&](double share) {
+                        return std::abs(std::min(share, 1.0) - static_cast<double>(map[at])) < 1e-4;
+                    })) {
+                    needed = radius;
+                    break;
+                }
+            }
+            most = std::max(most, needed);
+        }
+        return most;
+    }
+};
+
+} // namespace
+
+TEST_CASE("maps with tables hold what an ideal map holds within what was asked for") {
+    drawn_maps maps;
+    const std::size_t texels = maps.ideal.size();
+    CHECK(std::count_if(maps.ideal.begin(), maps.ideal.end(), [](float d) { return d < 0.99f; }) >
+          static_cast<std::ptrdiff_t>(texels / 2));
+
+    // hulls: rounding alone
+    const std::vector<float> exact = maps.draw({lab::raster_kind::exact, 0.0});
+    const std::size_t hulls = maps.triangles();
+    CHECK(maps.deviation(exact, {0.005, 0.01, 0.02}) <= 0.02);
+
+    // the rasteriser snaps corners to 1/256 of a texel
+    std::size_t pieces = 0;
+    for (const double allowed : {0.25, 0.5, 1.0}) {
+        CAPTURE(allowed);
+        const std::vector<float> map = maps.draw({lab::raster_kind::bound, allowed});
+        CHECK(maps.raster.counted().front().uncut == 0);
+        CHECK(maps.deviation(map, {0.05, 0.5 * allowed, 0.75 * allowed, allowed + 0.02}) <=
+              allowed + 0.02);
+        pieces = std::max(pieces, maps.triangles());
+    }
+    CHECK(pieces > hulls);
+
+    // what the two are measured against: without cuts, and with the coarsest rule of the papers
+    for (const lab::raster_choice& how : {lab::raster_choice{lab::raster_kind::fragment, 0.0},
+                                          lab::raster_choice{lab::raster_kind::rule, 5.0}}) {
+        CAPTURE(lab::raster_name(how));
+        CHECK(maps.deviation(maps.draw(how), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) >= 2.0);
+    }
+}
+
+TEST_CASE("ways to draw maps with tables are read and written alike") {
+    for (const char* text : {"none", "fragment", "rule:2.5", "bound:0.5", "exact", "ideal"}) {
+        CHECK(lab::raster_name(lab::parse_raster(text)) == text);
+    }
+    CHECK(lab::raster_name({}) == "exact");
+    for (const char* text : {"", "rule", "rule:", "rule:x", "rule:0", "bound:-1", "exact:1",
+                             "bound:nan", "rule:101", "rule:5x", "Exact"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(lab::parse_raster(text), lab::bad_input);
+    }
+}
