@@ -127,14 +127,14 @@ projective_result<T> fit_projective(std::span<const Weight> weights, int width, 
     const detail::texel_objective objective{samples, detail::bounded(options.reach, 0.0, 1.0),
                                             aspect, options.turn};
     const auto size = [&](const detail::bent_map& bent) {
-        return bent.scale() * detail::mean_shrinkage(histogram, bent.warp, samples.total);
+        return bent.scale() * detail::mean_shrinkage(histogram, bent.warp, samples);
     };
     const detail::map_axes upright = detail::upright_axes(aspect);
     const double uniform = size(objective.map(glm::dvec2(0.0), upright));
     glm::dvec2 bend = detail::best_bend(objective, strongest);
     double angle = 0.0;
     const detail::bent_map straight = objective.map(bend, upright);
-    const double shrinkage = detail::mean_shrinkage(histogram, straight.warp, samples.total);
+    const double shrinkage = detail::mean_shrinkage(histogram, straight.warp, samples);
     double value = straight.scale() * shrinkage;
     bool turned = false;
     if (options.turn) {

@@ -171,21 +171,27 @@ struct texel_objective {
 
 /// Mean of w^(3/2) over every cell: times the scale of the map it is the true objective.
 template <typename Weight>
-double mean_shrinkage(const histogram<Weight>& h, const plane_warp& warp, double total) {
+double mean_shrinkage(const histogram<Weight>& h, const plane_warp& warp,
+                      const condensed& samples) {
     if (warp.slope == glm::dvec2(0.0)) {
         return 1.0;
     }
     double sum = 0.0;
+    weighted_points some; // in portions, so that roots are taken several at a time
     for (int j = 0; j < h.height; ++j) {
-        for (int i = 0; i < h.width; ++i) {
+        const auto row = static_cast<std::size_t>(j);
+        for (int i = samples.first[row]; i <= samples.last[row]; ++i) {
             if (const double weight = h.at(i, j); weight > 0.0) {
-                const double at = warp.w(h.centre(i, j));
-                const double w = at > 0.0 ? at : 0.0;
-                sum += weight * (w * std::sqrt(w));
+                some.add(h.centre(i, j), weight);
             }
         }
+        if (some.count > weighted_points::capacity - largest_side || j + 1 == h.height) {
+            some.pad();
+            sum += some.sum(warp);
+            some.count = 0;
+        }
     }
-    return sum / total;
+    return sum / samples.total;
 }
 
 /// `v`, no longer than `longest`.

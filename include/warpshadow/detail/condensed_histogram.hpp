@@ -1,6 +1,7 @@
 // A histogram condensed to a few weighted points, and the region of its samples.
 #pragma once
 
+#include <warpshadow/detail/lanes.hpp>
 #include <warpshadow/detail/plane_warp.hpp>
 
 #include <glm/vec2.hpp>
@@ -19,6 +20,7 @@ inline constexpr int largest_side = 256;
 /// Weighted points that stand for a histogram.
 struct weighted_points {
     static constexpr int capacity = 1280;
+    static_assert(capacity % native_lanes == 0);
     std::array<double, capacity> x, y, weight;
     int count = 0;
 
@@ -29,15 +31,42 @@ struct weighted_points {
         weight[i] = w;
         ++count;
     }
-    /// Sum of weight · w^(3/2).
-    double sum(const plane_warp& warp) const {
-        double total = 0.0;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-            const double at = warp.constant + warp.slope.x * x[i] + warp.slope.y * y[i];
-            const double w = at > 0.0 ? at : 0.0; // a caller's region need not hold all samples
-            total += weight[i] * (w * std::sqrt(w));
+    /// Fills up the last lanes with points of no weight.
+    void pad() {
+        for (auto i = static_cast<std::size_t>(count); i % native_lanes != 0; ++i) {
+            x[i] = x[0];
+            y[i] = y[0];
+            weight[i] = 0.0;
         }
-        return total;
+    }
+    /// Sum of weight · w^(3/2), of padded points.
+    double sum(const plane_warp& warp) const {
+        using lane = lanes<native_lanes>;
+        lane total = {};
+        const lane zero = {};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += native_lanes) {
+            lane px;
+            lane py;
+            lane mass;
+            load(px, x.data() + i);
+            load(py, y.data() + i);
+            load(mass, weight.data() + i);
+            const lane at = warp.constant + warp.slope.x * px + warp.slope.y * py;
+            const lane w = at > zero ? at : zero; // a caller's region need not hold all samples
+            total += mass * (w * square_roots(w));
+        }
+        return sum_of(total);
+    }
+
+  private:
+    static double sum_of(const lanes<native_lanes>& parts) {
+        double each[native_lanes];
+        store(each, parts);
+        double all = 0.0;
+        for (const double part : each) {
+            all += part;
+        }
+        return all;
     }
 };
 
@@ -107,6 +136,7 @@ struct condensed {
     weighted_points blocks; ///< 16 × 16 blocks at their centres of gravity
     weighted_points cells;  ///< the same, but the cells themselves of every block that holds
                             ///< more than 1/64 of everything
+    std::array<int, largest_side> first, last; ///< cells of each row that hold something
     map_region region;
     glm::dvec2 centre{0.0}; ///< of gravity
     double total = 0.0;
@@ -115,8 +145,8 @@ struct condensed {
 template <typename Weight> void condense(const histogram<Weight>& h, condensed& out) {
     const int columns = (h.width + 15) / 16;
     const int rows = (h.height + 15) / 16;
-    std::array<int, largest_side> first; // cells of each row that hold something
-    std::array<int, largest_side> last;
+    std::array<int, largest_side>& first = out.first;
+    std::array<int, largest_side>& last = out.last;
     for (std::size_t j = 0; j < static_cast<std::size_t>(h.height); ++j) {
         first[j] = h.width;
         last[j] = -1;
@@ -166,6 +196,8 @@ template <typename Weight> void condense(const histogram<Weight>& h, condensed& 
             }
         }
     }
+    out.blocks.pad();
+    out.cells.pad();
     hull_side left;
     hull_side right;
     for (int j = 0; j < h.height; ++j) {
