@@ -171,7 +171,7 @@ class view_runner {
                         lab::run_method(record, renderer,
                                         {camera, light, map, wanted_.seed, wanted_.repeat, bias,
                                          wanted_.filter, raster.value_or(lab::raster_choice{}),
-                                         &rays},
+                                         &rays, wanted_.tables, &truth.shadowed},
                                         samples, truth.shadowed);
                         if (raster) {
                             record.raster = lab::raster_name(*raster);

@@ -9,6 +9,10 @@ namespace ws = warpshadow;
 
 namespace {
 
+/// Of the Gaussian of rectilinear tables, 12 of 512 cells: where importance is summed, wider is
+/// better than the published 3.
+constexpr float sigma = 12.0f / 512.0f;
+
 constexpr std::array methods{
     method{.name = "sm"},
     method{.name = "stable", .base = map_base::stable},
@@ -23,6 +27,45 @@ constexpr std::array methods{
     method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
     method{.name = "notw", .desired_view = true, .warp = true, .for_points = "cube-notw"},
     method{.name = "notw-nodv", .warp = true},
+    method{.name = "notw-edges",
+           .desired_view = true,
+           .warp = true,
+           .tables = {.shadows = known_shadows::last_frame,
+                      .share = 0.5f,
+                      .power = 2.0f / 3.0f,
+                      .build = {.floor = 0.1f}},
+           .for_points = "cube-notw"},
+    method{.name = "notw-oracle",
+           .desired_view = true,
+           .warp = true,
+           .tables = {.shadows = known_shadows::truth,
+                      .share = 0.5f,
+                      .power = 2.0f / 3.0f,
+                      .build = {.floor = 0.1f}},
+           .for_points = "cube-notw"},
+    // Rosen's forward analysis knows nothing of the view but its frustum
+    method{.name = "rtw-forward",
+           .base = map_base::minimal,
+           .warp = true,
+           .tables = {.from = analysis::forward,
+                      .functions = {.distance = true, .edge = true, .alpha = 0.1f},
+                      .cells = ws::cell_rule::largest,
+                      .rectilinear = true,
+                      .width = sigma},
+           .for_points = "cube-notw"},
+    method{.name = "rtw-backward",
+           .desired_view = true,
+           .warp = true,
+           .tables = {.rectilinear = true, .width = sigma},
+           .for_points = "cube-notw"},
+    method{.name = "rtw-hybrid",
+           .desired_view = true,
+           .warp = true,
+           .tables = {.from = analysis::hybrid,
+                      .functions = {.edge = true, .alpha = 0.1f},
+                      .rectilinear = true,
+                      .width = sigma},
+           .for_points = "cube-notw"},
     method{.name = "cube6", .base = map_base::all_around},
     method{.name = "cube6-cull", .base = map_base::all_around, .omni = {.cull_objects = true}},
     method{.name = "cube6-efc",

@@ -4,6 +4,7 @@
 #include "lab/bias.hpp"
 #include "lab/omni.hpp"
 #include "lab/scene.hpp"
+#include "lab/warp_options.hpp"
 
 #include <optional>
 #include <span>
@@ -30,6 +31,7 @@ struct method {
     bool fitted = false;              ///< projective warp fitted to the lit view samples
     bool warp = false;                ///< tables, and triangles cut for them
     omni_way omni = {};               ///< of maps all around
+    warp_options tables = {};         ///< how they are made, with `warp`
     std::string_view for_points = {}; ///< the method that does this for point lights, if not this
 };
 

@@ -7,6 +7,7 @@
 #include "lab/omni.hpp"
 #include "lab/passes.hpp"
 #include "lab/statistics.hpp"
+#include "lab/tables.hpp"
 #include "lab/warp_pictures.hpp"
 
 #include <algorithm>
@@ -40,6 +41,19 @@ int size_of_maps(const method& how, int map_size) {
     return std::max(1, static_cast<int>(std::lround(map_size / std::sqrt(how.partitions))));
 }
 
+map_resources resources(const method& how, const view_request& request, std::size_t maps) {
+    const warp_options options = request.tables.over(how.tables);
+    const int size = size_of_maps(how, request.map_size);
+    const int cells = how.warp ? std::min(options.tables, size) : 0;
+    return {size, maps, cells, options.rectilinear ? 1 : cells};
+}
+
+/// What a method keeps on the device while a camera moves.
+struct moving_resources {
+    map_resources maps;
+    shadow_memory shadows;
+};
+
 int used_maps(const light_maps& chosen) {
     return static_cast<int>(std::count_if(chosen.maps.begin(), chosen.maps.end(),
                                           [](const light_map& each) { return each.used; }));
@@ -70,7 +84,7 @@ struct renderer::state {
 
     /// One frame from the G-buffer to the shadow test.
     light_maps frame(const method& how, const view_request& request, light_memory& memory,
-                     map_resources& maps, bool count) {
+                     map_resources& maps, const shadow_memory& shadows, bool count) {
         const ws::frustum<double> camera = camera_frustum(gpu.world(), request.camera, gpu.view());
         light_maps chosen = choose_maps(how, request, memory);
         gpu.timed_pass("g-buffer", [&] {
@@ -100,7 +114,14 @@ struct renderer::state {
                 gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
             }
             if (how.warp) {
-                gpu.build_tables(maps, i, count);
+                const warp_options options = request.tables.over(how.tables);
+                if (options.build.v_first) {
+                    gpu.warp_map(i, glm::dmat4(glm::dvec4(0.0, 1.0, 0.0, 0.0),
+                                               glm::dvec4(1.0, 0.0, 0.0, 0.0),
+                                               glm::dvec4(0.0, 0.0, 1.0, 0.0),
+                                               glm::dvec4(0.0, 0.0, 0.0, 1.0)));
+                }
+                warps.build(maps, i, options, camera, shadows, count);
                 if (!how.omni.hemispheres) {
                     weakened = warped.weaken(maps, i);
                 }
@@ -147,6 +168,25 @@ struct renderer::state {
 
     const std::vector<triangle_counts>& counted(const method& how) const {
         return how.omni.hemispheres ? omni.raster().counted() : warped.counted();
+    }
+
+    /// The shadows that a method is told before its first frame.
+    shadow_memory told(const method& how, const view_request& request) {
+        shadow_memory result;
+        if (how.tables.shadows == known_shadows::truth && request.truth != nullptr) {
+            warps.remember(result, camera_frustum(gpu.world(), request.camera, gpu.view()),
+                           *request.truth);
+        }
+        return result;
+    }
+
+    /// Keeps the shadows of a frame for the next, for methods that want them.
+    void remember(const method& how, const view_request& request, shadow_memory& shadows) {
+        if (how.tables.shadows == known_shadows::last_frame) {
+            gpu.timed_pass("keep shadows", [&] {
+                warps.remember(shadows, camera_frustum(gpu.world(), request.camera, gpu.view()));
+            });
+        }
     }
 
     /// Shadow test of the samples in use.
@@ -232,7 +272,8 @@ struct renderer::state {
             if (how.warp) {
                 const map_resources::tables& warp = maps.warps[i];
                 for (named_picture& each :
-                     warp_pictures({maps.size, warp.rows.read<float>(), warp.columns.read<float>(),
+                     warp_pictures({maps.size, warp.counts.width(), warp.rows.height(),
+                                    warp.rows.read<float>(), warp.columns.read<float>(),
                                     warp.first_counts, warp.second_counts})) {
                     each.name += suffix;
                     result.push_back(std::move(each));
@@ -261,13 +302,14 @@ struct renderer::state {
     omni_passes omni{gpu};
     bias_passes biased{gpu};
     metric_passes metric{gpu};
+    table_passes warps{gpu};
     g_buffer seen, seen_before;
     std::vector<double> fit_us;     ///< times of the projective fit alone
     std::vector<double> culling_us; ///< times of sorting objects to the maps of a point light
     double weakened = 0.0;          ///< share of the identity in the last tables
     bool remembers = false;
     // kept while a camera moves, so that frames do not begin with allocations
-    std::map<std::string, map_resources, std::less<>> moving_maps;
+    std::map<std::string, moving_resources, std::less<>> moving;
 };
 
 renderer::renderer(const scene& world, glm::ivec2 view)
@@ -318,10 +360,12 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     light_memory memory;
     light_maps chosen = s.choose_maps(how, request, memory);
     const std::size_t map_count = chosen.maps.size() * static_cast<std::size_t>(how.partitions);
-    map_resources maps(size_of_maps(how, request.map_size), map_count, how.warp);
+    map_resources maps = resources(how, request, map_count);
+    shadow_memory shadows = s.told(how, request);
     const auto frame = [&](bool count) {
         light_memory fresh;
-        chosen = s.frame(how, request, fresh, maps, count);
+        chosen = s.frame(how, request, fresh, maps, shadows, count);
+        s.remember(how, request, shadows);
     };
 
     s.fit_us.clear();
@@ -415,18 +459,18 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     state& s = *state_;
     const method& how = find_method(name);
     const std::string key = std::string(name) + " " + std::to_string(request.map_size);
-    auto found = s.moving_maps.find(key);
-    if (found == s.moving_maps.end()) {
+    auto found = s.moving.find(key);
+    if (found == s.moving.end()) {
         light_memory unused;
         const std::size_t count = s.choose_maps(how, request, unused).maps.size();
-        found = s.moving_maps
-                    .try_emplace(key, size_of_maps(how, request.map_size),
-                                 count * static_cast<std::size_t>(how.partitions), how.warp)
-                    .first;
+        moving_resources fresh{
+            resources(how, request, count * static_cast<std::size_t>(how.partitions)), {}};
+        found = s.moving.emplace(key, std::move(fresh)).first;
         light_memory copy = memory.light;
-        s.frame(how, request, copy, found->second, false); // warms up
+        s.frame(how, request, copy, found->second.maps, found->second.shadows, false); // warms up
     }
-    map_resources& maps = found->second;
+    map_resources& maps = found->second.maps;
+    shadow_memory& shadows = found->second.shadows;
     const light_memory before = memory.light;
     moving_frame result{};
     light_maps chosen;
@@ -434,7 +478,7 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
         memory.light = before;
         s.forget_counts();
         s.gpu.watch().start();
-        chosen = s.frame(how, request, memory.light, maps, true);
+        chosen = s.frame(how, request, memory.light, maps, shadows, true);
         result.frame_ms = s.gpu.watch().stop();
     } while (s.grow_lists(how));
     result.shadowed = s.gpu.shadowed();
@@ -443,7 +487,8 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     light_memory copy = before; // the same frame once more, pass by pass
     std::map<std::string, std::vector<double>> times;
     s.gpu.time_into(&times);
-    s.frame(how, request, copy, maps, false);
+    s.frame(how, request, copy, maps, shadows, false);
+    s.remember(how, request, shadows);
     s.gpu.begin_frame();
     s.gpu.time_into(nullptr);
     for (const auto& [pass, ms] : times) {
@@ -463,7 +508,7 @@ void renderer::remember_view(const std::optional<camera_view>& camera) {
     state& s = *state_;
     s.remembers = camera.has_value();
     if (!camera) {
-        s.moving_maps.clear(); // another light may have another number of maps
+        s.moving.clear(); // another light may have another number of maps
     } else {
         s.gpu.draw_view(s.seen_before,
                         camera_matrix(camera_frustum(s.gpu.world(), *camera, s.gpu.view())),

@@ -4,6 +4,7 @@
 #include "lab/bias.hpp"
 #include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
+#include "lab/warp_options.hpp"
 #include "lab/warped_raster.hpp"
 
 #include <warpshadow/metric.hpp>
@@ -26,13 +27,15 @@ namespace lab {
 struct view_request {
     camera_view camera;
     light_view light;
-    int map_size;                                   ///< texels along each side of the shadow map
-    unsigned seed;                                  ///< of anything random
-    int repeat;                                     ///< frames timed after the warm-up
-    std::optional<bias_choice> bias = std::nullopt; ///< to be measured; else the plane's
-    filter_choice filter = {};                      ///< for pictures
-    raster_choice raster = {};                      ///< of maps with tables
-    const ray_tracer* rays = nullptr;               ///< for maps without a rasteriser
+    int map_size;                                     ///< texels along each side of the shadow map
+    unsigned seed;                                    ///< of anything random
+    int repeat;                                       ///< frames timed after the warm-up
+    std::optional<bias_choice> bias = std::nullopt;   ///< to be measured; else the plane's
+    filter_choice filter = {};                        ///< for pictures
+    raster_choice raster = {};                        ///< of maps with tables
+    const ray_tracer* rays = nullptr;                 ///< for maps without a rasteriser
+    warp_wishes tables = {};                          ///< for methods with warp tables
+    const std::vector<std::uint8_t>* truth = nullptr; ///< for methods that are told it
 };
 
 /// View samples, row 0 at the bottom of the picture.
@@ -77,9 +80,9 @@ struct method_result {
     std::size_t triangles; ///< rasterised into the shadow maps
     int maps;              ///< shadow maps drawn
     double angle;          ///< of the map's sides to the axes of the light, radians
-    std::optional<double> weakened;  ///< share of the identity in the last map's tables
-    std::optional<double> mean_side; ///< predicted side of a texel, to one without tables
-    std::vector<std::string> status; ///< names of the guards that fired
+    std::optional<double> weakened;     ///< share of the identity in the last map's tables
+    std::optional<double> mean_side;    ///< predicted side of a texel, to one without tables
+    std::vector<std::string> status;    ///< names of the guards that fired
     std::optional<texel_metric> texels; ///< of methods whose maps have a matrix
     std::vector<named_picture> pictures;
     std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for

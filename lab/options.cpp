@@ -1,6 +1,7 @@
 #include "lab/options.hpp"
 
 #include "lab/figures.hpp"
+#include "lab/warp_arguments.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -200,7 +201,9 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     app.add_flag("--list-scenes", result.list_scenes, "Print the built-in scenes and their views");
     list("--camera", cameras, "Camera, may be repeated (0)");
     list("--light", lights, "Light, may be repeated (0)");
-    list("--methods", wanted, "Comma-separated methods, or all (all)");
+    list("--methods", wanted,
+         "Comma-separated methods, or all "
+         "(sm,min-sm,dv,fitted,rtw-backward,notw,notw-edges,raytraced)");
     list("--map", maps, "Comma-separated sizes of the shadow map in texels (512)");
     app.add_option("--view", view, "Size of the picture, WxH (1024x768)");
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
@@ -210,6 +213,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
                    "the picture); wrong pixels are counted without (none)");
     list("--raster", rasters,
          "Comma-separated ways to draw maps with tables, to compare (exact); see below");
+    warp_arguments tables;
+    add_warp_arguments(app, tables);
     app.add_option("--preset", result.preset,
                    "Redo a figure of a paper: figure6, figure8, vpl or vpl:POINTS");
     app.add_option("--path", result.path,
@@ -228,6 +233,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         std::replace(text.begin(), text.end(), '\n', ' ');
         throw bad_input(text + " (see --help)");
     }
+
+    result.tables = warp_wishes_of(tables);
 
     const auto replace_if_given = [](std::vector<std::string>& target,
                                      const std::vector<std::string>& given) {

@@ -3,6 +3,7 @@
 
 #include "lab/bias.hpp"
 #include "lab/scene.hpp"
+#include "lab/warp_options.hpp"
 #include "lab/warped_raster.hpp"
 
 #include <glm/glm.hpp>
@@ -20,13 +21,15 @@ struct options {
     std::vector<std::string> scenes{"outdoor", "interior"};
     std::vector<std::string> cameras{"0"};
     std::vector<std::string> lights{"0"};
-    std::vector<std::string> methods{"all"};
+    std::vector<std::string> methods{"sm",           "min-sm", "dv",         "fitted",
+                                     "rtw-backward", "notw",   "notw-edges", "raytraced"};
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
     std::vector<bias_choice> biases;    ///< to be compared; none: the exact test, not measured
     filter_choice filter;               ///< of the shadows in pictures
     std::vector<raster_choice> rasters; ///< of maps with tables, to be compared; none: the default
+    warp_wishes tables;                 ///< for methods with warp tables
     std::string preset;                 ///< a figure to redo, see lab/figures.hpp, or none
     std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
     int frames = 60;  ///< along the path

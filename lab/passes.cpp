@@ -2,9 +2,6 @@
 
 #include "lab/shaders.hpp"
 
-#include <warpshadow/smoothing.hpp>
-#include <warpshadow/warp_build.hpp>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -34,6 +31,9 @@ struct map_block {
 
 constexpr std::size_t most_maps = 8;
 
+/// WS_CENTRES_STRIP of passes/unwarp_centres.glsl.
+constexpr int centres_strip = 16;
+
 /// Texture units and buffer bindings that several shaders share.
 enum unit : GLuint {
     unit_position = 0,
@@ -59,18 +59,18 @@ g_buffer::g_buffer(glm::ivec2 view)
     : position(GL_RGBA32F, view.x, view.y), normal(GL_RGBA32F, view.x, view.y),
       depth(GL_DEPTH_COMPONENT32F, view.x, view.y), target({&position, &normal}, &depth) {}
 
-map_resources::tables::tables(int size)
-    : counts(GL_R32UI, size, size), rows(GL_R32F, size + 1, size), columns(GL_R32F, size + 1, size),
-      centres(GL_RG32F, size, size) {}
+map_resources::tables::tables(int size, int cells, int functions)
+    : counts(GL_R32UI, cells, cells), rows(GL_R32F, cells + 1, functions),
+      columns(GL_R32F, cells + 1, functions), centres(GL_RG32F, size, size) {}
 
-map_resources::map_resources(int map_size, std::size_t maps, bool warped)
+map_resources::map_resources(int map_size, std::size_t maps, int cells, int functions)
     : size(map_size), depth(GL_DEPTH_COMPONENT32F, map_size, map_size, static_cast<int>(maps)) {
     all_layers = gl::framebuffer::of_layers(depth);
     for (std::size_t i = 0; i < maps; ++i) {
         targets.push_back(gl::framebuffer::of_layer(depth, static_cast<int>(i)));
         desired.emplace_back(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW);
-        if (warped) {
-            warps.emplace_back(size);
+        if (cells > 0) {
+            warps.emplace_back(size, cells, functions);
         }
     }
 }
@@ -78,8 +78,10 @@ map_resources::map_resources(int map_size, std::size_t maps, bool warped)
 std::size_t map_resources::bytes() const {
     std::size_t sum = depth.bytes();
     for (const tables& each : warps) {
-        sum +=
-            each.counts.bytes() + each.rows.bytes() + each.columns.bytes() + each.centres.bytes();
+        for (const gl::texture* part :
+             {&each.counts, &each.rows, &each.columns, &each.centres, &each.classes, &each.lines}) {
+            sum += part->id() != 0 ? part->bytes() : 0;
+        }
     }
     return sum;
 }
@@ -95,15 +97,12 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     find_desired_view_ = compute("desired_view.comp");
     find_depth_range_ = compute("depth_range.comp");
     crop_ = compute("crop.comp");
-    splat_rows_ = compute("splat_rows.comp");
-    splat_columns_ = compute("splat_columns.comp");
-    sum_columns_ = compute("column_sums.comp");
-    build_axis_ = compute("build_axis.comp");
     unwarp_centres_ = compute("unwarp_centres.comp");
+    count_histogram_ = compute("histogram.comp");
     test_plain_ = compute("shadow_test.comp");
     test_warped_ = compute("shadow_test.comp", {"WARPED"});
-    for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &splat_rows_,
-                                       &splat_columns_, &test_plain_, &test_warped_}) {
+    for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &count_histogram_,
+                                       &test_plain_, &test_warped_}) {
         set_units(*program);
     }
 }
@@ -218,8 +217,8 @@ void passes::use(const g_buffer& seen, const light_maps& maps, const ws::light<d
 }
 
 void passes::select_map(std::size_t index) {
-    for (const gl::program* program : {&draw_plain_, &find_desired_view_, &crop_, &splat_rows_,
-                                       &splat_columns_, &test_warped_}) {
+    for (const gl::program* program :
+         {&draw_plain_, &find_desired_view_, &crop_, &count_histogram_, &test_warped_}) {
         program->set("map_index", static_cast<int>(index));
     }
 }
@@ -260,7 +259,7 @@ std::vector<std::uint32_t> passes::histogram(std::size_t index, int size) {
     }
     histogram_.clear(glm::uvec4(0u));
     histogram_.bind_image(0, GL_READ_WRITE);
-    splat_rows_.dispatch(view_.x, view_.y);
+    count_histogram_.dispatch(view_.x, view_.y);
     gl::wait_for_writes();
     return histogram_.read<std::uint32_t>();
 }
@@ -277,58 +276,22 @@ void passes::write_map(std::size_t index, const glm::dmat4& matrix) {
     light_buffer_.write(sizeof(light_block) + index * sizeof map, sizeof map, &map);
 }
 
-void passes::build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts) {
-    map_resources::tables& warp = maps.warps[index];
-    const gl::program& splat = columns ? splat_columns_ : splat_rows_;
-    const gl::texture& table = columns ? warp.columns : warp.rows;
-    timed_pass(columns ? "splat columns" : "splat rows", [&] {
-        warp.counts.clear(glm::uvec4(0u));
-        warp.counts.bind_image(0, GL_READ_WRITE);
-        splat.dispatch(view_.x, view_.y);
-        gl::wait_for_writes();
-    });
-    if (keep_counts) {
-        (columns ? warp.second_counts : warp.first_counts) = warp.counts.read<std::uint32_t>();
-    }
-    timed_pass(columns ? "build columns" : "build rows", [&] {
-        const int size = warp.counts.width();
-        warp.counts.bind_image(0, GL_READ_WRITE);
-        sum_columns_.dispatch(size);
-        gl::wait_for_writes();
-        table.bind_image(1, GL_WRITE_ONLY);
-        const ws::build_options<float> options;
-        build_axis_.set("ws_radius", ws::window_radius(options.window, size));
-        // the device computes nodes in float: four times the floor that rounding once needs
-        build_axis_.set("ws_floor",
-                        std::max(options.floor, 4.0f * ws::smallest_floor<float, float>(size)));
-        build_axis_.use();
-        glDispatchCompute(static_cast<GLuint>(size), 1, 1);
-        gl::wait_for_writes();
-    });
-}
-
-void passes::build_tables(map_resources& maps, std::size_t index, bool keep_counts) {
-    select_map(index);
-    map_resources::tables& warp = maps.warps[index];
-    build_axis(maps, index, false, keep_counts);
-    warp.rows.bind(unit_rows);
-    build_axis(maps, index, true, keep_counts);
-    warp.columns.bind(unit_columns);
-    find_centres(maps, index);
-}
-
 void passes::find_centres(map_resources& maps, std::size_t index) {
     const map_resources::tables& warp = maps.warps[index];
     timed_pass("unwarp centres", [&] {
+        warp.rows.bind(unit_rows);
+        warp.columns.bind(unit_columns);
         warp.centres.bind_image(0, GL_WRITE_ONLY);
-        unwarp_centres_.dispatch(warp.centres.width(), warp.centres.height());
+        // a strip of a column each
+        unwarp_centres_.dispatch(warp.centres.width(),
+                                 (warp.centres.height() + centres_strip - 1) / centres_strip);
         gl::wait_for_writes();
         warp.centres.bind(unit_centres);
     });
 }
 
-void passes::draw_plain_map(map_resources& maps, std::size_t index) {
-    select_map(index);
+void passes::draw_plain_map(map_resources& maps, std::size_t index, std::size_t matrix) {
+    select_map(matrix);
     maps.targets[index].bind();
     glClear(GL_DEPTH_BUFFER_BIT);
     draw_plain_.use();
@@ -357,7 +320,7 @@ void passes::test_shadows(map_resources& maps, const light_maps& chosen, bool wa
 }
 
 std::vector<float> passes::draw_depths(const glm::dmat4& matrix, int size) {
-    map_resources whole(size, 1, false);
+    map_resources whole(size, 1, 0, 0);
     write_map(0, matrix);
     draw_plain_map(whole, 0);
     return whole.depth.read<float>();

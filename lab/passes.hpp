@@ -29,12 +29,14 @@ struct g_buffer {
 
 /// Textures and buffers of all maps of one method; their size follows the maps.
 struct map_resources {
-    map_resources(int size, std::size_t maps, bool warped);
+    /// `cells` of the tables along a side, 0 for maps without; `functions` of either axis.
+    map_resources(int size, std::size_t maps, int cells, int functions);
 
     /// Count map and tables of one map.
     struct tables {
-        explicit tables(int size);
+        tables(int size, int cells, int functions);
         gl::texture counts, rows, columns, centres;
+        gl::texture classes, lines; ///< where a method wants them, see lab/tables.cpp
         std::vector<std::uint32_t> first_counts, second_counts; ///< read back where wanted
     };
 
@@ -82,11 +84,15 @@ class passes {
     std::vector<std::uint32_t> histogram(std::size_t index, int size);
     /// Puts a matrix before that of a map, as it is after a crop.
     void warp_map(std::size_t index, const glm::dmat4& warp);
-    /// Importance of one map, and the functions of both axes.
-    void build_tables(map_resources& maps, std::size_t index, bool keep_counts);
     /// Where the centres of the texels of one map with tables lie before the warp.
     void find_centres(map_resources& maps, std::size_t index);
-    void draw_plain_map(map_resources& maps, std::size_t index);
+    /// Makes a map the one that the next passes are about.
+    void select_map(std::size_t index);
+    void draw_plain_map(map_resources& maps, std::size_t index) {
+        draw_plain_map(maps, index, index);
+    }
+    /// Draws one map with the matrix of another.
+    void draw_plain_map(map_resources& maps, std::size_t index, std::size_t matrix);
     /// Shadow test of all samples in use.
     void test_shadows(map_resources& maps, const light_maps& chosen, bool warped);
     /// Only the depths of one map, into a texture of no array; for pictures.
@@ -116,9 +122,7 @@ class passes {
   private:
     [[nodiscard]] std::vector<glm::vec4> face_normals() const;
     void note(const char* name, double ms);
-    void select_map(std::size_t index);
     void write_map(std::size_t index, const glm::dmat4& matrix);
-    void build_axis(map_resources& maps, std::size_t index, bool columns, bool keep_counts);
 
     const scene& world_;
     glm::ivec2 view_;
@@ -129,8 +133,7 @@ class passes {
     gl::buffer light_buffer_, depths_;
     gl::texture histogram_;
     gl::program draw_g_buffer_, draw_plain_;
-    gl::program find_desired_view_, find_depth_range_, crop_, splat_rows_, splat_columns_,
-        sum_columns_, build_axis_, unwarp_centres_;
+    gl::program find_desired_view_, find_depth_range_, crop_, count_histogram_, unwarp_centres_;
     gl::program test_plain_, test_warped_;
     gl::stopwatch watch_;
     std::map<std::string, std::vector<double>>* times_ = nullptr;

@@ -63,7 +63,9 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
                                                  std::nullopt,
                                                  {},
                                                  raster_of(wanted),
-                                                 &rays},
+                                                 &rays,
+                                                 wanted.tables,
+                                                 &truth},
                                                 each.memory);
             const comparison against_truth = compare(samples, truth, moved.shadowed);
             path_frame row{};

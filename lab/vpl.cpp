@@ -154,8 +154,8 @@ std::vector<virtual_light> make_virtual_lights(const scene& world, std::size_t c
 vpl_passes::vpl_passes(const scene& world, const point_cloud& cloud, int map_size)
     : cloud_(cloud), size_(map_size), reach_(glm::length(world.box.hi - world.box.lo)),
       draw_face_(program_of("lab/vpl_face.vert")), draw_half_(program_of("lab/vpl_half.vert")),
-      points_(std::span<const glm::vec3>(cloud.points)), faces_(map_size, 6, false),
-      hemispheres_(map_size, 2, false), masks_(cloud.groups.size()) {
+      points_(std::span<const glm::vec3>(cloud.points)), faces_(map_size, 6, 0, 0),
+      hemispheres_(map_size, 2, 0, 0), masks_(cloud.groups.size()) {
     array_.bind();
     points_.bind(GL_ARRAY_BUFFER);
     glEnableVertexAttribArray(0);

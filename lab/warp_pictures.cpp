@@ -46,10 +46,16 @@ std::vector<named_picture> warp_pictures(const warp_readback& warp) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
                static_cast<std::size_t>(x);
     };
-    const ws::table_view<float> rows{warp.rows, size, size};
-    const ws::table_view<float> columns{warp.columns, size, size};
+    const ws::table_view<float> rows{warp.rows, warp.cells, warp.functions};
+    const ws::table_view<float> columns{warp.columns, warp.cells, warp.functions};
     const std::vector<float> importance = shades(warp.importance);
     const std::vector<float> half_warped = shades(warp.half_warped);
+    // shade of the cell around a place of the map
+    const auto cell_of = [&](const std::vector<float>& shade, int x, int y) {
+        const glm::ivec2 cell = glm::ivec2(x, y) * warp.cells / size;
+        return shade[static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(warp.cells) +
+                     static_cast<std::size_t>(cell.x)];
+    };
 
     canvas before("importance", size);
     canvas between("importance-rows-warped", size);
@@ -57,14 +63,16 @@ std::vector<named_picture> warp_pictures(const warp_readback& warp) {
     std::vector<glm::ivec2> cell(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
-            before.set(x, y, heat(importance[at(x, y)]));
-            between.set(x, y, heat(half_warped[at(y, x)]));
+            before.set(x, y, heat(cell_of(importance, x, y)));
+            if (!half_warped.empty()) {
+                between.set(x, y, heat(cell_of(half_warped, y, x)));
+            }
             const glm::vec2 q = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
                                 static_cast<float>(size);
             const glm::vec2 p = glm::clamp(ws::unwarp(rows, columns, q), 0.0f, 1.0f);
             cell[at(x, y)] = glm::ivec2(p * static_cast<float>(grid_lines));
             const glm::ivec2 texel = glm::min(glm::ivec2(p * static_cast<float>(size)), size - 1);
-            grid.set(x, y, heat(importance[at(texel.x, texel.y)]));
+            grid.set(x, y, heat(cell_of(importance, texel.x, texel.y)));
         }
     }
     for (int y = 0; y + 1 < size; ++y) {
@@ -76,7 +84,9 @@ std::vector<named_picture> warp_pictures(const warp_readback& warp) {
     }
     std::vector<named_picture> result;
     result.push_back(std::move(before.picture));
-    result.push_back(std::move(between.picture));
+    if (!half_warped.empty()) {
+        result.push_back(std::move(between.picture));
+    }
     result.push_back(std::move(grid.picture));
     return result;
 }

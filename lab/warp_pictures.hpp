@@ -12,11 +12,13 @@ namespace lab {
 
 /// Tables and counts of one warp, as read from the device; row 0 at the bottom.
 struct warp_readback {
-    int size;                               ///< cells along either axis
-    std::vector<float> rows;                ///< size · (size + 1) nodes
-    std::vector<float> columns;             ///< size · (size + 1) nodes
+    int size;                               ///< texels of the map along either axis
+    int cells;                              ///< of a function, and of the counts along either axis
+    int functions;                          ///< of either axis
+    std::vector<float> rows;                ///< functions · (cells + 1) nodes
+    std::vector<float> columns;             ///< functions · (cells + 1) nodes
     std::vector<std::uint32_t> importance;  ///< counts in the unwarped map
-    std::vector<std::uint32_t> half_warped; ///< counts after the rows, transposed
+    std::vector<std::uint32_t> half_warped; ///< counts after the rows, transposed; or none
 };
 
 /// "importance", "importance-rows-warped" (Milet et al. 2015, figure 4) and "warp-grid" (figure 5).

@@ -3,6 +3,11 @@
 // Dispatch one work group per row. Reads the sums of column_sums.glsl, takes the window of 2r + 1
 // rows around its own as a difference, scans it, and writes the w + 1 nodes of its function.
 // Include warpshadow/warp_build.glsl before.
+//
+// Define WS_BUILD_POWER to raise what a window counts to a power; include warpshadow/importance.glsl
+// before, too. An error that falls with the density of texels, summed over samples, is least when
+// the density goes with the root of their number: a power of ½ where each axis errs by itself. The
+// caller keeps the sum of a row, which is largest where all cells count alike, below 2^32 steps.
 #ifndef WS_BINDING_SUMS
 #define WS_BINDING_SUMS 0
 #endif
@@ -19,6 +24,10 @@ layout(r32f, binding = WS_BINDING_TABLE) uniform writeonly image2D ws_table;
 
 uniform int ws_radius;  // half-width of the window, from ws_window_radius
 uniform float ws_floor; // density floor
+#ifdef WS_BUILD_POWER
+uniform float ws_power;       // positive
+uniform float ws_power_steps; // steps in an importance of 1, see `ws_weight_in_steps`
+#endif
 
 shared uint ws_partial[WS_BUILD_GROUP];
 shared uint ws_blocks[WS_BUILD_GROUP / WS_BUILD_BLOCK];
@@ -29,7 +38,12 @@ uint ws_window_count(int i, int row, int last)
     if (row > ws_radius) {
         count -= imageLoad(ws_sums, ivec2(i, row - ws_radius - 1)).r;
     }
+#ifdef WS_BUILD_POWER
+    float weight = count > 0u ? pow(float(count), ws_power) : 0.0;
+    return ws_weight_in_steps(weight, ws_power_steps);
+#else
     return count;
+#endif
 }
 
 void main()

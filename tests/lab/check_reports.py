@@ -14,11 +14,13 @@ from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
 METHODS = ["sm", "stable", "min-sm", "dv", "dv-4", "lispsm", "fitted", "fitted-2", "min-sm-notw",
-           "lispsm-notw", "fitted-notw", "notw", "notw-nodv"]
+           "lispsm-notw", "fitted-notw", "notw", "notw-nodv", "notw-edges", "notw-oracle",
+           "rtw-forward", "rtw-backward", "rtw-hybrid"]
 FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-gs", "cube6-efc-gs",
                     "dpsm", "dpsm-cull", "dpsm-pc", "dpsm-gs", "dpsm-cull-gs", "dpsm-pc-gs",
                     "cube-notw", "dpsm-notw"]
-NOT_FOR_POINTS = ["sm", "stable", "dv-4", "fitted-2", "notw", "notw-nodv"]
+NOT_FOR_POINTS = ["sm", "stable", "dv-4", "fitted-2", "notw", "notw-nodv", "notw-edges",
+                  "notw-oracle", "rtw-forward", "rtw-backward", "rtw-hybrid"]
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
 RUN_KEYS = {
@@ -222,6 +224,27 @@ def check_finer_scene():
     assert abs(one["wrong_pixel_ratio"] - other["wrong_pixel_ratio"]) < 0.01
 
 
+def check_tables():
+    """Options of the warp tables: what they change, and what they leave alone."""
+    arguments = ["--scene", "leaves", "--map", "64"]
+    methods = "notw,notw-edges,rtw-forward,rtw-backward,rtw-hybrid"
+    usual = report("tables", *arguments, "--methods", methods)
+    wrong = {r["method"]: r["wrong_pixel_ratio"] for r in usual["runs"]}
+    options = ["--importance", "desired-view,distance,normal", "--tables", "32", "--window", "0.4",
+               "--floor", "0.2", "--order", "v", "--power", "0.7", "--subset", "2", "--cells",
+               "max", "--collapse", "max", "--sigma", "0.05", "--edge-share", "0.3"]
+    other = report("others", *arguments, "--methods", methods, *options)
+    assert all(r["wrong_pixel_ratio"] != wrong[r["method"]] for r in other["runs"])
+    # a wide window and one table node: nothing is warped, whoever analyses
+    level = report("level", *arguments, "--methods", "dv,notw,rtw-backward", "--floor", "1")
+    level = {r["method"]: r["wrong_pixel_ratio"] for r in level["runs"]}
+    assert abs(level["notw"] - level["dv"]) < 0.01 and abs(level["rtw-backward"] - level["dv"]) < 0.01
+    coarse = report("coarse", *arguments, "--methods", "notw", "--tables", "8")
+    assert coarse["runs"][0]["bytes"] < usual["runs"][0]["bytes"]
+    path = report("edges", *arguments, "--methods", "notw-edges", "--path", "yaw", "--frames", "3")
+    assert [p["method"] for p in path["paths"]] == ["notw-edges"]
+
+
 def check_paths():
     """A camera that moves: frame by frame, and against what must hold for any camera."""
     arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,raytraced", "--map", "64"]
@@ -387,7 +410,8 @@ def check_help():
     done = run("--help")
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
-                   "--view", "--repeat", "--bias", "--filter", "--preset", "--path", "--frames", "--seed", "--out", "Examples:"):
+                   "--view", "--repeat", "--bias", "--importance", "--tables", "--window", "--floor",
+                   "--order", "--power", "--subset", "--cells", "--collapse", "--sigma", "--filter", "--preset", "--path", "--frames", "--seed", "--out", "Examples:"):
         assert option in done.stdout, option
     listed = run("--list-scenes")
     assert listed.returncode == 0 and listed.stderr == ""
@@ -403,6 +427,7 @@ check_help()
 check_folders()
 check_every_method()
 check_spot_and_point()
+check_tables()
 check_paths()
 check_virtual_lights()
 check_finer_scene()

@@ -22,7 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string data = LAB_TEST_DATA;
-constexpr std::array<std::string_view, 3> methods{"sm", "notw", "raytraced"};
+/// Those that are run by default, and one more.
+constexpr std::array<std::string_view, 9> methods{
+    "sm", "min-sm", "dv", "fitted", "rtw-backward", "notw", "notw-edges", "raytraced", "lispsm"};
 
 lab::options parsed(std::vector<const char*> arguments) {
     arguments.insert(arguments.begin(), "warpshadow-lab");
@@ -137,7 +139,7 @@ TEST_CASE("the default camera sees the whole box") {
 TEST_CASE("command line: spaces, =, lists, repetition and negative numbers") {
     const lab::options none = parsed({});
     CHECK(none.scenes == std::vector<std::string>{"outdoor", "interior"});
-    CHECK(none.methods == std::vector<std::string>{"sm", "notw", "raytraced"});
+    CHECK(none.methods == std::vector<std::string>(methods.begin(), methods.end() - 1));
     CHECK(none.maps == std::vector<int>{512});
     CHECK(none.view == glm::ivec2(1024, 768));
     CHECK(none.repeat == 5);
@@ -150,7 +152,7 @@ TEST_CASE("command line: spaces, =, lists, repetition and negative numbers") {
     CHECK(all.scenes == std::vector<std::string>{"leaves", "interior", "colonnade"});
     CHECK(all.cameras == std::vector<std::string>{"-2.6,-1,.5,-1,2,3,65", "-.5,1,2,3,4,5,60"});
     CHECK(all.lights == std::vector<std::string>{"sun:-1,-2,-3"});
-    CHECK(all.methods == std::vector<std::string>{"sm", "notw", "raytraced"});
+    CHECK(all.methods == std::vector<std::string>(methods.begin(), methods.end()));
     CHECK(all.maps == std::vector<int>{256, 1024});
     CHECK(all.view == glm::ivec2(640, 480));
     CHECK(all.repeat == 9);

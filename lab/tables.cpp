@@ -1,0 +1,277 @@
+#include "lab/tables.hpp"
+
+#include <warpshadow/smoothing.hpp>
+#include <warpshadow/warp_build.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace lab {
+
+namespace ws = warpshadow;
+
+namespace {
+
+enum unit : GLuint { unit_known = 6, unit_light_depths = 7, unit_light_edges = 8 };
+
+/// Texels along a side of the light's depth image, as in Rosen 2012, §6.
+constexpr int light_image_size = 512;
+
+/// Difference of depths beyond which the light's image has an edge: more than a slope of two takes
+/// over a texel, where the scene is as deep as it is wide.
+constexpr float edge_bias = 4.0f / static_cast<float>(light_image_size);
+
+/// Share of the view's depth below which all counts as near alike: the camera's near plane is so
+/// near that nothing is ever worth what the distance function gives there.
+constexpr double nearest_share = 1.0 / 256.0;
+
+bool uses_functions(const warp_options& options) {
+    return options.functions.distance || options.functions.edge || options.functions.normal;
+}
+
+bool looks_from_the_light(const warp_options& options) {
+    return options.from == analysis::forward ||
+           (options.from == analysis::hybrid && options.functions.edge);
+}
+
+} // namespace
+
+table_passes::table_passes(passes& gpu) : gpu_(gpu) {
+    weigh_cells_ = gpu.compute("weigh_cells.comp");
+    sum_columns_ = gpu.compute("column_sums.comp");
+    build_axis_ = gpu.compute("build_axis.comp");
+    build_power_ = gpu.compute("build_axis.comp", {"WS_BUILD_POWER"});
+    none_.shadowed = gl::texture(GL_R8UI, 1, 1);
+}
+
+table_passes::splat_programs& table_passes::programs(const warp_options& options) {
+    std::vector<std::string> defines;
+    if (options.from == analysis::forward) {
+        defines.emplace_back("FORWARD");
+    }
+    if (uses_functions(options) || options.from == analysis::forward) {
+        defines.emplace_back("WS_SPLAT_WEIGHTED");
+        if (options.functions.edge) {
+            defines.emplace_back("LIGHT_EDGES");
+        }
+    }
+    if (options.cells == ws::cell_rule::largest) {
+        defines.emplace_back("WS_SPLAT_LARGEST");
+    }
+    if (options.shadows != known_shadows::none) {
+        defines.emplace_back("WS_SPLAT_CLASSES 2");
+    }
+    if (options.every > 1) {
+        defines.emplace_back("WS_SPLAT_SUBSET");
+    }
+    const auto found = splats_.find(defines);
+    if (found != splats_.end()) {
+        return found->second;
+    }
+    splat_programs made;
+    made.rows = gpu_.compute("splat.comp", defines);
+    std::vector<std::string> of_columns = defines;
+    of_columns.emplace_back("WS_SPLAT_COLUMNS");
+    made.columns = gpu_.compute("splat.comp", of_columns);
+    for (const gl::program* program : {&made.rows, &made.columns}) {
+        passes::set_units(*program);
+        program->set("ws_every", options.every);
+    }
+    return splats_.emplace(defines, std::move(made)).first->second;
+}
+
+std::uint64_t table_passes::sample_count(const warp_options& options) const {
+    const glm::ivec2 size =
+        options.from == analysis::forward ? glm::ivec2(light_image_size) : gpu_.view();
+    return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+}
+
+float table_passes::steps(const warp_options& options, int cells) const {
+    constexpr float largest = 2.0f * 3.0f; // of the functions' product, and of their sum
+    if (options.cells == ws::cell_rule::largest) {
+        const auto all = static_cast<std::uint64_t>(cells) * static_cast<std::uint64_t>(cells);
+        return ws::weight_steps(all, largest);
+    }
+    return ws::weight_steps(sample_count(options), largest);
+}
+
+float table_passes::power_steps(const warp_options& options, int cells) const {
+    // most steps that all windows of a row can hold, as many in each cell
+    const double all = 4294967296.0 / 2.0;
+    const double each = std::pow(all / cells, static_cast<double>(options.power));
+    const double steps = (all / cells - 1.0) / each;
+    return static_cast<float>(std::exp2(std::floor(std::log2(std::max(steps, 0x1p-20)))));
+}
+
+void table_passes::look_from_the_light(std::size_t index, bool edges) {
+    if (!seen_by_light_) {
+        seen_by_light_.emplace(light_image_size, 1, 0, 0);
+        light_edges_ = gl::texture(GL_R8UI, light_image_size, light_image_size);
+        mark_edges_ = gpu_.compute("depth_edges.comp");
+    }
+    gpu_.draw_plain_map(*seen_by_light_, 0, index);
+    seen_by_light_->depth.bind(unit_light_depths);
+    if (edges) {
+        mark_edges_.set("ws_edge_bias", edge_bias);
+        light_edges_.bind_image(0, GL_WRITE_ONLY);
+        mark_edges_.dispatch(light_image_size, light_image_size);
+        gl::wait_for_writes();
+    }
+    light_edges_.bind(unit_light_edges);
+}
+
+void table_passes::splat(map_resources& maps, std::size_t index, const warp_options& options,
+                         bool columns) {
+    map_resources::tables& warp = maps.warps[index];
+    const gl::program& program = columns ? programs(options).columns : programs(options).rows;
+    const bool classes = options.shadows != known_shadows::none;
+    if (classes && warp.classes.width() != warp.counts.width()) {
+        warp.classes = gl::texture(GL_R32UI, warp.counts.width(), 2 * warp.counts.height());
+    }
+    gl::texture& target = classes ? warp.classes : warp.counts;
+    target.clear(glm::uvec4(0u));
+    target.bind_image(0, GL_READ_WRITE);
+    const glm::ivec2 samples =
+        options.from == analysis::forward ? glm::ivec2(light_image_size) : gpu_.view();
+    program.dispatch((samples.x + options.every - 1) / options.every,
+                     (samples.y + options.every - 1) / options.every);
+    gl::wait_for_writes();
+    if (classes) {
+        weigh_cells_.set("ws_share", options.share);
+        weigh_cells_.set("ws_steps", ws::weight_steps(sample_count(options), options.share + 0.5f));
+        warp.counts.bind_image(1, GL_WRITE_ONLY);
+        weigh_cells_.dispatch(warp.counts.width(), warp.counts.height());
+        gl::wait_for_writes();
+    }
+}
+
+void table_passes::build_axis(map_resources& maps, std::size_t index, const warp_options& options,
+                              bool columns, bool keep_counts) {
+    map_resources::tables& warp = maps.warps[index];
+    const gl::texture& table = columns ? warp.columns : warp.rows;
+    gpu_.timed_pass(columns ? "splat columns" : "splat rows",
+                    [&] { splat(maps, index, options, columns); });
+    if (keep_counts) {
+        (columns ? warp.second_counts : warp.first_counts) = warp.counts.read<std::uint32_t>();
+    }
+    gpu_.timed_pass(columns ? "build columns" : "build rows", [&] {
+        const int size = warp.counts.width();
+        warp.counts.bind_image(0, GL_READ_WRITE);
+        sum_columns_.dispatch(size);
+        gl::wait_for_writes();
+        table.bind_image(1, GL_WRITE_ONLY);
+        const gl::program& build = options.power == 1.0f ? build_axis_ : build_power_;
+        build.set("ws_radius", ws::window_radius(options.build.window, size));
+        // the device computes nodes in float: four times the floor that rounding once needs
+        build.set("ws_floor",
+                  std::max(options.build.floor, 4.0f * ws::smallest_floor<float, float>(size)));
+        build.set("ws_power", options.power);
+        build.set("ws_power_steps", power_steps(options, size));
+        build.use();
+        glDispatchCompute(static_cast<GLuint>(size), 1, 1);
+        gl::wait_for_writes();
+    });
+}
+
+void table_passes::build_lines(map_resources& maps, std::size_t index, const warp_options& options,
+                               bool keep_counts) {
+    map_resources::tables& warp = maps.warps[index];
+    const int size = warp.counts.width();
+    gpu_.timed_pass("splat", [&] { splat(maps, index, options, false); });
+    if (keep_counts) {
+        warp.first_counts = warp.counts.read<std::uint32_t>();
+    }
+    gpu_.timed_pass("collapse and build", [&] {
+        const std::string rule =
+            options.collapse == ws::cell_rule::largest ? "WS_COLLAPSE_LARGEST" : "WS_COLLAPSE_SUM";
+        gl::program& collapse = collapse_.try_emplace(rule).first->second;
+        if (collapse.id() == 0) {
+            collapse = gpu_.compute("collapse.comp", {rule});
+        }
+        if (build_line_.id() == 0) {
+            build_line_ = gpu_.compute("build_line.comp");
+        }
+        if (warp.lines.width() != size) {
+            warp.lines = gl::texture(GL_R32UI, size, 2);
+        }
+        warp.counts.bind_image(0, GL_READ_ONLY);
+        warp.lines.bind_image(1, GL_READ_WRITE);
+        collapse.dispatch(size);
+        gl::wait_for_writes();
+        warp.lines.bind_image(0, GL_READ_ONLY);
+        warp.rows.bind_image(1, GL_WRITE_ONLY);
+        warp.columns.bind_image(2, GL_WRITE_ONLY);
+        build_line_.set("ws_cells", glm::ivec2(size));
+        build_line_.set("ws_width", options.width * static_cast<float>(size));
+        build_line_.set("ws_floor", std::max(options.build.floor,
+                                             4.0f * ws::smallest_floor<float, float>(size)));
+        build_line_.set("ws_power", options.power);
+        build_line_.use();
+        glDispatchCompute(2, 1, 1);
+        gl::wait_for_writes();
+    });
+}
+
+void table_passes::build(map_resources& maps, std::size_t index, const warp_options& options,
+                         const ws::frustum<double>& camera, const shadow_memory& before,
+                         bool keep_counts) {
+    gpu_.select_map(index);
+    map_resources::tables& warp = maps.warps[index];
+    const splat_programs& splats = programs(options);
+    const double nearest =
+        std::max(camera.volume.near_distance, nearest_share * camera.volume.far_distance);
+    for (const gl::program* program : {&splats.rows, &splats.columns}) {
+        program->set("map_index", static_cast<int>(index));
+        program->set("functions.distance", static_cast<int>(options.functions.distance));
+        program->set("functions.edge", static_cast<int>(options.functions.edge));
+        program->set("functions.normal", static_cast<int>(options.functions.normal));
+        program->set("functions.add", static_cast<int>(options.functions.add));
+        program->set("functions.near_distance", static_cast<float>(nearest));
+        program->set("functions.inverse_far", static_cast<float>(1.0 / camera.volume.far_distance));
+        program->set("functions.alpha", options.functions.alpha);
+        program->set("functions.beta", options.functions.beta);
+        program->set("functions.least_cosine", options.functions.least_cosine);
+        program->set("steps", steps(options, warp.counts.width()));
+        const glm::dvec3 forward = glm::normalize(camera.forward);
+        program->set("view_depth", glm::vec4(glm::dvec4(forward, -glm::dot(forward, camera.eye))));
+        program->set("eye", glm::vec3(camera.eye));
+        program->set("camera", camera_matrix(camera));
+        program->set("any_known", static_cast<int>(before.known));
+        program->set("known_camera", before.camera);
+    }
+    (before.known ? before : none_).shadowed.bind(unit_known);
+    if (looks_from_the_light(options)) {
+        gpu_.timed_pass("light image", [&] { look_from_the_light(index, options.functions.edge); });
+    }
+    if (options.rectilinear) {
+        build_lines(maps, index, options, keep_counts);
+        passes::bind_tables(maps, index);
+    } else {
+        build_axis(maps, index, options, false, keep_counts);
+        passes::bind_tables(maps, index);
+        build_axis(maps, index, options, true, keep_counts);
+    }
+    gpu_.find_centres(maps, index);
+}
+
+void table_passes::remember(shadow_memory& memory, const ws::frustum<double>& camera) {
+    if (memory.shadowed.width() != gpu_.view().x || memory.shadowed.height() != gpu_.view().y) {
+        memory.shadowed = gl::texture(GL_R8UI, gpu_.view().x, gpu_.view().y);
+    }
+    const gl::texture& mask = gpu_.mask();
+    glCopyImageSubData(mask.id(), GL_TEXTURE_2D, 0, 0, 0, 0, memory.shadowed.id(), GL_TEXTURE_2D, 0,
+                       0, 0, 0, mask.width(), mask.height(), 1);
+    memory.camera = camera_matrix(camera);
+    memory.known = true;
+}
+
+void table_passes::remember(shadow_memory& memory, const ws::frustum<double>& camera,
+                            const std::vector<std::uint8_t>& shadowed) {
+    memory.shadowed = gl::texture(GL_R8UI, gpu_.view().x, gpu_.view().y);
+    memory.shadowed.write(shadowed.data());
+    memory.camera = camera_matrix(camera);
+    memory.known = true;
+}
+
+} // namespace lab
