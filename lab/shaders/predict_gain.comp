@@ -3,6 +3,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lab/light.glsl"
 #include "lab/view_sample.glsl"
+#include "warpshadow/warp.glsl"
 #include "warpshadow/warp_strength.glsl"
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;

@@ -1,6 +1,7 @@
 #version 430 core
 // Mixes the functions of a table with the identity.
 layout(local_size_x = 16, local_size_y = 8) in;
+#include "warpshadow/warp.glsl"
 #include "warpshadow/warp_strength.glsl"
 layout(r32f, binding = 0) uniform image2D table;
 uniform float share;
