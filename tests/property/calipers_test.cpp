@@ -160,7 +160,7 @@ TEMPLATE_TEST_CASE("the rectangle around many points, with scratch", "[calipers]
     using T = TestType;
     for (const auto* name :
          {"random", "rounded collinear", "rectangles jittered by ulps", "one NaN"}) {
-        for (const std::size_t count : {64u, 65u, 200u}) {
+        for (const std::size_t count : {20u, 40u, 64u, 65u, 200u}) {
             INFO(name << ", " << count);
             const points<T> set = many_points<T>(name, 3, count);
             points<T> scratch(set.size());
@@ -208,10 +208,34 @@ TEMPLATE_TEST_CASE("too little scratch gives the axis-aligned rectangle", "[cali
 namespace {
 
 template <int N> detail::few_rectangles in_lanes(const detail::few_points& few) {
+    using L = detail::lanes<N>;
     detail::few_rectangles result{};
-    detail::find_edges<detail::lanes<N>>(few, result);
-    detail::measure<detail::lanes<N>>(few, result);
+    detail::find_edges<L>(few, detail::spread_points<L>(few), result);
+    detail::measure<L>(few, detail::spread_points<L>(few), result);
     return result;
+}
+
+template <int N> detail::few_points without_inside(detail::few_points few) {
+    detail::drop_inside<detail::lanes<N>>(few);
+    return few;
+}
+
+std::vector<glm::dvec2> list_of(const detail::few_points& few) {
+    std::vector<glm::dvec2> list;
+    for (std::size_t i = 0; i < few.size; ++i) {
+        list.push_back({few.x[i], few.y[i]});
+    }
+    return list;
+}
+
+/// The vertices of the exact hull, in its order.
+std::vector<glm::dvec2> exact_hull(const std::vector<glm::dvec2>& set) {
+    std::vector<glm::dvec2> corners;
+    for (const std::size_t i :
+         exact::hull(exact::on_grid(std::span<const glm::dvec2>(set)).points)) {
+        corners.push_back(set[i]);
+    }
+    return corners;
 }
 
 } // namespace
@@ -242,6 +266,37 @@ TEMPLATE_TEST_CASE("rectangles in lanes are the bits of rectangles one by one", 
             }
         }
     }
+}
+
+TEMPLATE_TEST_CASE("what lies inside is dropped, and no vertex of the hull", "[calipers]", float,
+                   double) {
+    using T = TestType;
+    std::size_t dropped = 0;
+    for (const point_sets::kind& kind : point_sets::kinds) {
+        for (std::uint64_t seed = 0; seed < point_sets::sets_of(kind, 4); ++seed) {
+            const points<T> set = point_sets::make<T>(kind.name, seed);
+            if (!kind.finite || set.size() > detail::few_points::capacity) {
+                continue;
+            }
+            INFO(kind.name << ", seed " << seed);
+            detail::few_points few{};
+            detail::copy_finite(detail::scaled_points<T>(view(set)), few);
+            const detail::few_points kept = without_inside<1>(few);
+            REQUIRE(exact_hull(list_of(kept)) == exact_hull(list_of(few)));
+            for (std::size_t i = 0; i < kept.size; ++i) {
+                REQUIRE(kept.x[i] == few.x[kept.number[i]]);
+                REQUIRE(kept.y[i] == few.y[kept.number[i]]);
+                REQUIRE((i == 0 || kept.number[i - 1] < kept.number[i]));
+            }
+            dropped += few.size - kept.size;
+            for (const auto& other :
+                 {without_inside<2>(few), without_inside<4>(few), without_inside<8>(few)}) {
+                // Lanes may choose other corners of equal reach, and keep other points inside.
+                REQUIRE(exact_hull(list_of(other)) == exact_hull(list_of(few)));
+            }
+        }
+    }
+    REQUIRE(dropped > 0);
 }
 
 TEMPLATE_TEST_CASE("J23: the rectangle of scaled points is the scaled rectangle", "[calipers]",

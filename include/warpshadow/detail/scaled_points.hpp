@@ -51,7 +51,11 @@ template <typename T> struct scaled_points {
     }
     std::size_t size() const { return points.size(); }
     glm::dvec2 operator[](std::size_t i) const {
-        return {double(points[i].x) * scale, double(points[i].y) * scale};
+        if constexpr (sizeof(T) == 4) {
+            return {double(points[i].x), double(points[i].y)};
+        } else {
+            return {double(points[i].x) * scale, double(points[i].y) * scale};
+        }
     }
 
   private:
