@@ -2,8 +2,10 @@
 # Sourced by run.sh, with $folder and $out set.
 small=(--view 512x384 --repeat 1)
 command_bench lispsm_accuracy "$out/accuracy.md" "$out/accuracy.json"
-lab --scene outdoor,interior,colonnade,leaves --camera 0 --camera 1 --light 0 --light 1 \
-    --methods sm,dv,dv-4,fitted,fitted-2 --map 512,1024 "${small[@]}" --out "$out/views"
+for scene in outdoor interior colonnade leaves; do
+    lab --scene "$scene" --camera 0 --camera 1 --light 0 --light 1 --map 512,1024 \
+        --methods sm,dv,dv-4,fitted,fitted-2 "${small[@]}" --out "$out/views-$scene"
+done
 # per camera two suns at right angles to its view and two behind it
 pairs=(
     0.3,1.593,4.5,-1.1,0.4926,-9,55

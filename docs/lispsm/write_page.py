@@ -38,13 +38,15 @@ def gather(folder):
                  "wrong_pixel_ratio": path["mean"]["wrong_pixel_ratio"],
                  "flip_ratio": path["mean"]["flip_ratio"]} for path in report["paths"]]
 
-    views = read("views/results.json")
-    pairs = [run for report in sorted(folder.glob("pairs-*/results.json"))
-             for run in runs_of(json.loads(report.read_text(encoding="utf-8")))]
-    paths = [path for report in sorted(folder.glob("path-*/results.json"))
-             for path in paths_of(json.loads(report.read_text(encoding="utf-8")))]
-    results = {"schema": 1, "device": views["device"], "accuracy": read("accuracy.json"),
-               "pairs": pairs, "views": runs_of(views), "paths": paths}
+    def all_of(pattern, part):
+        found = sorted(folder.glob(pattern + "/results.json"))
+        return [each for report in found
+                for each in part(json.loads(report.read_text(encoding="utf-8")))]
+
+    device = read("path-yaw/results.json")["device"]
+    results = {"schema": 1, "device": device, "accuracy": read("accuracy.json"),
+               "pairs": all_of("pairs-*", runs_of), "views": all_of("views-*", runs_of),
+               "paths": all_of("path-*", paths_of)}
     RESULTS.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 

@@ -5,8 +5,13 @@
 #include <cstddef>
 #include <cstring>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
+// the compilers' own loops stop at each root to set errno
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_elementwise_sqrt)
+#define WARPSHADOW_ROOTS __builtin_elementwise_sqrt
+#elif __has_builtin(__builtin_ia32_sqrtpd)
+#define WARPSHADOW_PAIR_OF_ROOTS __builtin_ia32_sqrtpd
+#endif
 #endif
 
 namespace warpshadow::detail {
@@ -47,18 +52,31 @@ template <typename L> void store(double* target, const L& value) {
     std::memcpy(target, &value, sizeof value);
 }
 
+/// The same from doubles that were written just now, put together in registers.
+template <std::size_t N> lanes<static_cast<int>(N)> lane_of(const double (&source)[N]) {
+    lanes<static_cast<int>(N)> value;
+    if constexpr (N == 1) {
+        value = source[0];
+    } else {
+        for (std::size_t i = 0; i < N; ++i) {
+            value[i] = source[i];
+        }
+    }
+    return value;
+}
+
 /// Square root of each; positive numbers and zero.
 template <typename L> L square_roots(const L& value) {
     if constexpr (sizeof(L) == sizeof(double)) {
         return std::sqrt(value);
     } else {
-#if defined(__SSE2__)
-        // the compilers' own loops stop at each root to set errno
-        constexpr std::size_t pairs = sizeof(L) / sizeof(__m128d);
-        __m128d parts[pairs];
+#if defined(WARPSHADOW_ROOTS)
+        return WARPSHADOW_ROOTS(value);
+#elif defined(WARPSHADOW_PAIR_OF_ROOTS)
+        lanes<2> parts[sizeof(L) / sizeof(lanes<2>)];
         std::memcpy(parts, &value, sizeof value);
-        for (__m128d& part : parts) {
-            part = _mm_sqrt_pd(part);
+        for (lanes<2>& part : parts) {
+            part = WARPSHADOW_PAIR_OF_ROOTS(part);
         }
         L roots;
         std::memcpy(&roots, parts, sizeof roots);
@@ -77,3 +95,6 @@ template <typename L> L square_roots(const L& value) {
 }
 
 } // namespace warpshadow::detail
+
+#undef WARPSHADOW_ROOTS
+#undef WARPSHADOW_PAIR_OF_ROOTS

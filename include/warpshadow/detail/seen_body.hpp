@@ -169,33 +169,32 @@ template <typename T> class seen_body {
         return r.x * x + r.y * y + r.z * z + r.w;
     }
     void look(std::size_t start) {
-        std::array<double, seen_points::capacity> px;
-        std::array<double, seen_points::capacity> py;
-        std::array<double, seen_points::capacity> pz;
         const std::size_t left = body_.size() - start;
         const std::size_t full = seen_points::capacity;
         const std::size_t count = left < full ? left : full;
+        const glm::dvec4 view(view_, 0.0);
         std::size_t i = 0;
-        for (; i < count || i % native_lanes != 0; ++i) {
-            const glm::vec<3, T>& p = body_[start + (i < count ? i : count - 1)];
-            px[i] = static_cast<double>(p.x);
-            py[i] = static_cast<double>(p.y);
-            pz[i] = static_cast<double>(p.z);
-            points_.present[i] = i < count ? 1.0 : 0.0;
-        }
-        points_.count = static_cast<int>(i);
-        for (i = 0; i < static_cast<std::size_t>(points_.count); i += native_lanes) {
-            lane a;
-            lane b;
-            lane c;
-            load(a, px.data() + i);
-            load(b, py.data() + i);
-            load(c, pz.data() + i);
+        for (; i < count; i += native_lanes) {
+            // put together in registers: several doubles at once cannot be read from where they
+            // were just written one by one
+            double one[4][native_lanes];
+            for (std::size_t k = 0; k < native_lanes; ++k) {
+                const std::size_t at = i + k < count ? i + k : count - 1;
+                const glm::vec<3, T>& p = body_[start + at];
+                one[0][k] = static_cast<double>(p.x);
+                one[1][k] = static_cast<double>(p.y);
+                one[2][k] = static_cast<double>(p.z);
+                one[3][k] = i + k < count ? 1.0 : 0.0;
+            }
+            const lane a = lane_of(one[0]);
+            const lane b = lane_of(one[1]);
+            const lane c = lane_of(one[2]);
             lane x = row(plane_.x, a, b, c);
             lane y = row(plane_.y, a, b, c);
             lane z = row(plane_.z, a, b, c);
-            const lane w = row(plane_.w, a, b, c);
+            lane w = 0.0 * a + 1.0; // NaN and infinity stay to be found
             if (!affine_) {
+                w = row(plane_.w, a, b, c);
                 const lane scale = 1.0 / w;
                 x = x * scale;
                 y = y * scale;
@@ -205,8 +204,10 @@ template <typename T> class seen_body {
             store(points_.y.data() + i, y);
             store(points_.z.data() + i, z);
             store(points_.distance.data() + i, w);
-            store(points_.depth.data() + i, row(glm::dvec4(view_, 0.0), a, b, c));
+            store(points_.depth.data() + i, row(view, a, b, c));
+            store(points_.present.data() + i, lane_of(one[3]));
         }
+        points_.count = static_cast<int>(i);
     }
 
     std::span<const glm::vec<3, T>> body_;
