@@ -8,9 +8,10 @@ namespace lab {
 
 namespace {
 
-/// When an edge is cut: always above this share of the map, never below so many texels, and in
-/// between when it bends by more than the last.
-constexpr double always_cut_share = 0.04;
+/// When an edge is cut, as for the maps of matrices: always above this share of the map, never
+/// below so many texels, and in between when it bends by more than the last. Longer edges would
+/// hide bends that their parts show, and triangles beside them would be cut without end.
+constexpr double always_cut_share = 0.01;
 constexpr double never_cut_texels = 0.5;
 constexpr double bend_texels = 1.0;
 

@@ -7,8 +7,7 @@ layout(binding = 3) uniform sampler2D warp_columns;
 layout(std430, binding = 7) writeonly buffer ready_pieces { half_piece ready[]; };
 
 // As in triangles.glsl, but that the places between the ends of an edge are on an arc, and that more
-// of them are tried, so that edges may be longer. The answer depends on the edge alone: triangles on
-// both sides cut it alike.
+// of them are tried. The answer depends on the edge alone: triangles on both sides cut it alike.
 uniform float longest;   // edges above this are always cut, in map units
 uniform float shortest;  // edges below this are never cut
 uniform float deviation; // allowed distance of the curve from the line, in map units
@@ -23,12 +22,13 @@ vec3 middle_of(vec3 a, vec3 b)
     return wa + wb > 0.0 ? sum / (wa + wb) : a;
 }
 
-// Whether places and the arcs between them, of at most that length, lie beyond one side of the map.
-bool off_map(vec2 lo, vec2 hi, float edge)
+// Whether places and the arcs between them, of at most that length, lie beyond one side of the map,
+// by so many times what an arc may bulge.
+bool off_map(vec2 lo, vec2 hi, float edge, float bulges)
 {
     vec2 scale = half_scale();
     float chord = 2.0 * edge / min(scale.x, scale.y);
-    vec2 margin = 0.125 * chord * chord * scale; // at least the chord's error, which is in radii
+    vec2 margin = bulges * 0.125 * chord * chord * scale; // at least the chord's error, which is in radii
     return chord < 2.0 && (any(lessThan(hi, -margin)) || any(greaterThan(lo, 1.0 + margin)));
 }
 
@@ -41,8 +41,8 @@ bool bends(vec3 p, float share, vec2 from, vec2 to)
 
 bool needs_cut(vec3 a, vec3 b)
 {
-    // What is behind is a convex cone. Twice as far as nothing is drawn: a triangle along the border
-    // of what is drawn would be cut without end if its longest edge never were.
+    // What is behind is a convex cone. Edges are left alone only well beyond what is drawn, here and
+    // beside the map: where triangles near such an edge are drawn, they are cut without end.
     bool a_shows = half_shows(a, 2.0 * overlap);
     bool b_shows = half_shows(b, 2.0 * overlap);
     if (!a_shows && !b_shows) {
@@ -52,7 +52,7 @@ bool needs_cut(vec3 a, vec3 b)
     vec2 place_b = half_place(b);
     float edge = distance(place_a, place_b);
     if (edge <= shortest ||
-        (a_shows && b_shows && off_map(min(place_a, place_b), max(place_a, place_b), edge))) {
+        (a_shows && b_shows && off_map(min(place_a, place_b), max(place_a, place_b), edge, 4.0))) {
         return false;
     }
     if (edge > longest) {
@@ -105,7 +105,7 @@ bool is_off(half_piece t)
     }
     vec2 a = half_place(t.p0), b = half_place(t.p1), c = half_place(t.p2);
     float edge = max(distance(a, b), max(distance(b, c), distance(c, a)));
-    return all(shows) && off_map(min(a, min(b, c)), max(a, max(b, c)), edge);
+    return all(shows) && off_map(min(a, min(b, c)), max(a, max(b, c)), edge, 1.0);
 }
 
 void emit_ready(half_piece t)

@@ -43,7 +43,7 @@ int triples() {
 
 /// Of so many triples one is drawn with tables too; of all where a number was asked for.
 int warped_triples() {
-    return std::getenv("WARPSHADOW_OMNI_TRIPLES") == nullptr ? triples() / 8 : 1;
+    return std::getenv("WARPSHADOW_OMNI_TRIPLES") == nullptr ? triples() / 4 : 1;
 }
 
 constexpr glm::ivec2 view{64, 48};
