@@ -32,11 +32,11 @@ bool off_map(vec2 lo, vec2 hi, float edge, float bulges)
     return chord < 2.0 && (any(lessThan(hi, -margin)) || any(greaterThan(lo, 1.0 + margin)));
 }
 
-// Whether the curve is too far from the line at this share of its length.
-bool bends(vec3 p, float share, vec2 from, vec2 to)
+// Whether the curve is farther than that from the line at this share of its length.
+bool bends(vec3 p, float share, vec2 from, vec2 to, float allowed)
 {
     vec2 q = ws_warp(warp_rows, warp_columns, half_place(p));
-    return distance(q, (1.0 - share) * from + share * to) > deviation;
+    return distance(q, (1.0 - share) * from + share * to) > allowed;
 }
 
 bool needs_cut(vec3 a, vec3 b)
@@ -58,10 +58,13 @@ bool needs_cut(vec3 a, vec3 b)
     if (edge > longest) {
         return true;
     }
+    // a part may bend as much as the whole where the bend is a kink: shorter edges are allowed more,
+    // else triangles beside an edge that is just straight enough would be cut without end
+    float allowed = deviation * min(0.6 + 0.1 * log2(longest / edge), 1.0);
     vec3 m = middle_of(a, b);
     vec2 from = ws_warp(warp_rows, warp_columns, place_a);
     vec2 to = ws_warp(warp_rows, warp_columns, place_b);
-    if (bends(m, 0.5, from, to)) {
+    if (bends(m, 0.5, from, to, allowed)) {
         return true;
     }
     // over two cells and less, the middle tells all
@@ -71,13 +74,13 @@ bool needs_cut(vec3 a, vec3 b)
     }
     vec3 near_a = middle_of(a, m);
     vec3 near_b = middle_of(m, b);
-    if (bends(near_a, 0.25, from, to) || bends(near_b, 0.75, from, to)) {
+    if (bends(near_a, 0.25, from, to, allowed) || bends(near_b, 0.75, from, to, allowed)) {
         return true;
     }
-    return cells > 4.0 && (bends(middle_of(a, near_a), 0.125, from, to) ||
-                           bends(middle_of(near_a, m), 0.375, from, to) ||
-                           bends(middle_of(m, near_b), 0.625, from, to) ||
-                           bends(middle_of(near_b, b), 0.875, from, to));
+    return cells > 4.0 && (bends(middle_of(a, near_a), 0.125, from, to, allowed) ||
+                           bends(middle_of(near_a, m), 0.375, from, to, allowed) ||
+                           bends(middle_of(m, near_b), 0.625, from, to, allowed) ||
+                           bends(middle_of(near_b, b), 0.875, from, to, allowed));
 }
 
 float edge_length(vec3 a, vec3 b)

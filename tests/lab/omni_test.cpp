@@ -330,25 +330,22 @@ TEST_CASE("tables inside paraboloids put texels where they are seen") {
     const lab::ray_tracer rays(world);
     lab::renderer renderer(world, {96, 72});
     const lab::light_view light{"", ws::point_light(glm::dvec3(0.2, 5.0, 1.0))};
-    // across the seam; of one side alone, and so little that the crop is narrow
-    const std::array cameras{lab::camera_view{"", {14, 9, 1.5}, {0, -3, 1}, glm::radians(60.0)},
-                             lab::camera_view{"", {18, 12, 18}, {2, -6, 5}, glm::radians(8.0)}};
-    for (const lab::camera_view& camera : cameras) {
-        const lab::g_buffer_samples samples = renderer.samples(camera, light);
-        const std::vector<std::uint8_t> truth = rays.shadows(samples, light).shadowed;
-        const auto wrong = [&](const char* name, int size) {
-            const lab::method_result result = renderer.run(name, {camera, light, size, 1, 1});
-            CHECK(result.status == std::vector<std::string>{});
-            const lab::comparison c = lab::compare(samples, truth, result.shadowed);
-            REQUIRE(c.samples > 1000);
-            return *c.ratio(c.false_light + c.false_shadow);
-        };
-        const double plain = wrong("dpsm", 128);
-        const double warped = wrong("dpsm-notw", 128);
-        INFO(plain << ", " << warped);
-        CHECK(warped < 0.7 * plain);
-        WARN(plain << ", " << warped);
-    }
+    // across the seam, z = 1, and of little, so that the crop is narrow
+    const lab::camera_view camera{"", {18, 12, 18}, {2, -6, 1.5}, glm::radians(8.0)};
+    const lab::g_buffer_samples samples = renderer.samples(camera, light);
+    const std::vector<std::uint8_t> truth = rays.shadows(samples, light).shadowed;
+    const auto wrong = [&](const char* name) {
+        const lab::method_result result = renderer.run(name, {camera, light, 128, 1, 1});
+        CHECK(result.maps == 2);
+        CHECK(result.status == std::vector<std::string>{});
+        const lab::comparison c = lab::compare(samples, truth, result.shadowed);
+        REQUIRE(c.samples > 1000);
+        return *c.ratio(c.false_light + c.false_shadow);
+    };
+    const double plain = wrong("dpsm");
+    const double warped = wrong("dpsm-notw");
+    INFO(plain << ", " << warped);
+    CHECK(warped < 0.5 * plain);
 }
 
 TEST_CASE("objects hold every triangle once, and know where they are") {
