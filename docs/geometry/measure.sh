@@ -13,9 +13,9 @@ WARPSHADOW_SETS=400 "$bench/geometry_failures" "$out/failures.md" "$folder/failu
 for name in geometry_bench geometry_bench_native; do
     printf 'timing %s ...\n' "$name"
     "$bench/$name" --benchmark_enable_random_interleaving=true --benchmark_repetitions=15 \
-        --benchmark_min_time=0.02 --benchmark_out="$out/$name.json" >/dev/null
+        --benchmark_min_time=0.005 --benchmark_out="$out/$name.json" >/dev/null
 done
 python3 "$folder/collect.py" speed "$out/geometry_bench.json" "$out/geometry_bench_native.json"
-lab --methods sm,stable,min-sm,dv --out "$out"
-python3 "$folder/collect.py" frames "$out/results.json"
+lab --methods sm,stable,min-sm,dv --out "$out/lab"
+python3 "$folder/collect.py" frames "$out/lab/results.json"
 python3 "$folder/write_page.py"

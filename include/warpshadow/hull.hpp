@@ -1,7 +1,6 @@
 // Convex hull in the plane: strictly convex, counter-clockwise, exact for every finite input.
 #pragma once
 
-#include <warpshadow/detail/lanes.hpp>
 #include <warpshadow/predicates.hpp>
 #include <warpshadow/status.hpp>
 
@@ -150,44 +149,72 @@ class inner_polygon {
         }
         lo_ = {corners[8].x, corners[12].y};
         hi_ = {corners[0].x, corners[4].y};
-        const double x = std::max(std::abs(lo_.x), std::abs(hi_.x));
-        const double y = std::max(std::abs(lo_.y), std::abs(hi_.y));
-        for (std::size_t i = 0; i < size; ++i) {
-            const glm::dvec2 d = corners[(i + 1) % size] - corners[i];
-            // 2^-49 (|d.y| x + |d.x| y) is more than all roundings here and in `contains`.
-            const double error = 0x1p-49 * (std::abs(d.y) * x) + 0x1p-49 * (std::abs(d.x) * y);
-            const bool side = d.x != 0.0 || d.y != 0.0;
-            x_[i] = -d.y;
-            y_[i] = d.x;
-            least_[i] = side ? d.x * corners[i].y - d.y * corners[i].x + error + 0x1p-1018 : -1.0;
-        }
+        make_bands(corners);
     }
 
     /// Whether p is inside for certain; not for a NaN, nor if all corners are one point.
     bool contains(const glm::dvec2& p) const {
-        constexpr std::size_t width = native_lanes > 1 ? 2 : 1; // wider ones take longer to sum up
-        using L = lanes<width>;
-        L worst = L{} + std::numeric_limits<double>::max();
-        for (std::size_t i = 0; i < size; i += width) {
-            L x, y, least;
-            load(x, &x_[i]);
-            load(y, &y_[i]);
-            load(least, &least_[i]);
-            const L depth = x * p.x + y * p.y - least;
-            worst = depth < worst ? depth : worst;
-        }
-        bool inside = (p.x > lo_.x) & (p.x < hi_.x) & (p.y > lo_.y) & (p.y < hi_.y);
-        std::array<double, width> depths;
-        store(depths.data(), worst);
-        for (const double depth : depths) {
-            inside &= depth > 0.0;
-        }
-        return inside;
+        const double place = (p.x - lo_.x) * bands_per_unit_;
+        const bool between = (place > 0.0) & (p.x < hi_.x);
+        const band& b = bands_[static_cast<std::size_t>(static_cast<int>(between ? place : 0.0))];
+        return between & (p.y > b.lower + b.lower_slope * p.x) &
+               (p.y < b.upper + b.upper_slope * p.x);
     }
 
   private:
     static constexpr std::size_t size = 16;
-    std::array<double, size> x_, y_, least_; // p is inside if x·p.x + y·p.y > least
+    static constexpr std::size_t bands = 16;
+
+    /// A strip from x to x: the inside lies between two lines there.
+    struct band {
+        double lower, lower_slope, upper, upper_slope;
+    };
+
+    /// Divides the extent into strips. The lower sides' lines have a convex largest value: in a
+    /// strip it is below its chord. So is the smallest value of the upper sides' lines above its.
+    void make_bands(const std::array<glm::dvec2, size>& corners) {
+        constexpr double endless = std::numeric_limits<double>::infinity();
+        const double step = (hi_.x - lo_.x) / static_cast<double>(bands);
+        std::array<double, bands + 1> lower;
+        std::array<double, bands + 1> upper;
+        lower.fill(-endless);
+        upper.fill(endless);
+        double steepest = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const glm::dvec2 d = corners[(i + 1) % size] - corners[i];
+            if (d.x == 0.0) {
+                continue; // upright: the extent is its bound
+            }
+            const double slope = d.y / d.x;
+            const double at_lo = corners[i].y + (lo_.x - corners[i].x) * slope;
+            const double rise = step * slope;
+            steepest = std::max(steepest, std::abs(slope));
+            for (std::size_t k = 0; k <= bands; ++k) {
+                const double y = at_lo + static_cast<double>(k) * rise;
+                lower[k] = d.x > 0.0 && y > lower[k] ? y : lower[k];
+                upper[k] = d.x < 0.0 && y < upper[k] ? y : upper[k];
+            }
+        }
+        // More than all roundings, 64u (u = 2^-53), here and in `contains`: of lines, of their
+        // values, and of the place of p among the strips. The last term: slopes may underflow.
+        const double x = std::max(std::abs(lo_.x), std::abs(hi_.x));
+        const double y = std::max(std::abs(lo_.y), std::abs(hi_.y));
+        const double error = 0x1p-46 * (steepest * x + y) + 0x1p-1070 * x + 0x1p-1018;
+        for (std::size_t k = 0; k < bands; ++k) {
+            const double from = lo_.x + static_cast<double>(k) * step;
+            band& b = bands_[k];
+            b.lower_slope = (lower[k + 1] - lower[k]) / step;
+            b.upper_slope = (upper[k + 1] - upper[k]) / step;
+            b.lower = lower[k] - b.lower_slope * from + error;
+            b.upper = upper[k] - b.upper_slope * from - error;
+        }
+        bands_[bands] = {endless, 0.0, -endless, 0.0}; // where a place rounds up
+        const double per_unit = 1.0 / step;
+        bands_per_unit_ = std::isfinite(per_unit) ? per_unit : 0.0;
+    }
+
+    std::array<band, bands + 1> bands_; // NaN in one, from an overflow, has nothing inside
+    double bands_per_unit_;
     glm::dvec2 lo_, hi_;
 };
 

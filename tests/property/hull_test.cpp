@@ -98,7 +98,9 @@ TEMPLATE_TEST_CASE("the hull of many points is the exact hull", "[hull]", float,
     using T = TestType;
     for (const auto* name :
          {"random", "integer grid 6x6", "rounded collinear", "rectangles jittered by ulps",
-          "mixed scales", "huge 1e20", "one NaN"}) {
+          "mixed scales", "huge 1e20", "one NaN", "one infinity", "tiny 1e-22", "offset 1e8",
+          "end of the range", "sliver 1e-5 to 1e-8", "a few ulps off a line", "regular polygons",
+          "integer contour"}) {
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
             INFO(name << ", seed " << seed);
             points<T> set;
@@ -107,6 +109,29 @@ TEMPLATE_TEST_CASE("the hull of many points is the exact hull", "[hull]", float,
                     set.push_back(p);
                 }
             }
+            check_hull(set);
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("of many points in a disk most are inside for certain", "[hull]", float,
+                   double) {
+    using T = TestType;
+    for (const double scale : {1e-30, 1.0, 1e30}) {
+        for (const double offset : {0.0, 100.0}) {
+            points<T> set;
+            for (int i = 0; i < 1000; ++i) { // a spiral, evenly spread
+                const double radius = scale * std::sqrt(i / 1000.0);
+                set.push_back({T(scale * offset + radius * std::cos(2.4 * i)),
+                               T(radius * std::sin(2.4 * i) - scale * offset)});
+            }
+            const detail::inner_polygon inside(std::span<const glm::vec<2, T>>(set),
+                                               detail::point_items{});
+            const auto count = std::count_if(set.begin(), set.end(), [&](const auto& p) {
+                return inside.contains(glm::dvec2(p));
+            });
+            CAPTURE(scale, offset);
+            CHECK(count > 800);
             check_hull(set);
         }
     }
