@@ -310,7 +310,7 @@ pipeline make_centres(std::list<gl::program>& kept, std::list<gl::texture>& maps
     const gl::texture& centres = maps.emplace_back(GL_RG32F, map, map);
     pipeline result;
     result.name = "centres " + std::to_string(map) + " of " + std::to_string(from.counts.width()) +
-                  ", strips of " + std::to_string(strip);
+                  (strip > 0 ? ", strips of " + std::to_string(strip) : ", bisection");
     result.steps = {{"centres", [&unwarp, &centres, &from, map, strip] {
                          from.rows.bind(2);
                          from.columns.bind(3);
@@ -411,7 +411,7 @@ int run(int rounds, const std::string& part) {
     for (tables& from : sizes) {
         const int cells = from.counts.width();
         pipeline fill = make_pipeline(with, bounds, from, 1);
-        for (const int strip : {0, 4, 16, 64}) {
+        for (const int strip : {0, 8, 16, 32}) {
             pipeline made = make_centres(kept, maps, from, cells, strip);
             if (cells >= 512 && cells <= 2048 && made.name.find(part) != std::string::npos) {
                 if (!fill.steps.empty()) {

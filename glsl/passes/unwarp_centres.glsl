@@ -39,9 +39,12 @@ void main()
     int last = min(texel.y + WS_CENTRES_STRIP, size.y);
     for (; texel.y < last; ++texel.y) {
         q.y = (float(texel.y) + 0.5) / float(size.y);
+        int cell = column_cell;
         float v = q.y + ws_axis_inverse_offset_near(ws_columns, column, q.y, column_cell);
         ws_row_blend row = ws_blend_rows(v, WS_TABLE_ROWS(ws_rows));
         float u = q.x + ws_axis_inverse_offset_near(ws_rows, row, q.x, row_cell);
         imageStore(ws_centres, texel, vec4(u, v, 0.0, 0.0));
+        // the next centre is about as far from here as this one from the last
+        column_cell += max(column_cell - cell - 1, 0);
     }
 }

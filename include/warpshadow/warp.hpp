@@ -220,39 +220,32 @@ T axis_inverse_offset_near(const table_view<T, Node>& table, const row_blend<T>&
                            int& cell) {
     int cells = table_cells(table);
     T clamped = clamp_to_unit(image);
-    int below = glm::clamp(cell, 0, cells - 1);
-    int above = below + 1;
-    T node0 = blended_node(table, blend, below);
-    T node1 = node0;
-    int stride = 1;
-    if (node0 <= clamped || below == 0) {
-        node1 = blended_node(table, blend, above);
-        while (node1 <= clamped && above < cells) {
-            stride *= 2;
-            below = above;
-            node0 = node1;
-            above = glm::min(above + stride, cells);
-            node1 = blended_node(table, blend, above);
-        }
-    } else {
-        while (node0 > clamped && below > 0) {
-            above = below;
-            node1 = node0;
-            below = glm::max(below - stride, 0);
-            node0 = blended_node(table, blend, below);
-            stride *= 2;
-        }
-    }
+    int below = 0;
+    int above = cells;
+    T node0 = T(0);
+    T node1 = T(1);
+    int probe = glm::clamp(cell, 1, glm::max(cells - 1, 1));
+    int up = 1;
+    int down = 1;
+    // one look-up in each round: a vector of fragments goes through the longest path of all
     while (above - below > 1) {
-        int middle = (below + above) / 2;
-        T node = blended_node(table, blend, middle);
-        if (node <= clamped) {
-            below = middle;
+        T node = blended_node(table, blend, probe);
+        bool low = node <= clamped;
+        int stride = low ? up : -down;
+        if (low) {
+            below = probe;
             node0 = node;
+            up *= 2;
+            down = 0;
         } else {
-            above = middle;
+            above = probe;
             node1 = node;
+            down *= 2;
+            up = 0;
         }
+        // halved once X is between two probes
+        probe =
+            stride != 0 ? glm::clamp(probe + stride, below + 1, above - 1) : (below + above) / 2;
     }
     cell = below;
     return inverse_offset_in_cell(node0, node1, below, cells, clamped);
