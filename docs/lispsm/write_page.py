@@ -55,7 +55,7 @@ def percent(ratio):
 
 
 def power(x):
-    return "∞" if x is None else f"{x:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return "none" if x is None else f"{x:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
 def geometric_mean(numbers):
@@ -114,19 +114,22 @@ def pairs(results):
                      ", ".join(f"`{s}`" for s in runs["lispsm"]["status"]) or "warped"])
     rows.sort(key=lambda row: (row[0], -int(row[1][:-1])))
 
-    def mean(select, against):
-        chosen = [r["lispsm"]["wrong_pixel_ratio"] / r[against]["wrong_pixel_ratio"]
-                  for r in by_pair.values() if select(angle_of(r["sm"]))]
-        return f"{geometric_mean(chosen):.2f}"
+    def means(select):
+        chosen = [r for r in by_pair.values() if select(r)]
+        ratio = [geometric_mean([r["lispsm"]["wrong_pixel_ratio"] / r[m]["wrong_pixel_ratio"]
+                                 for r in chosen]) for m in ("min-sm", "sm")]
+        return f"{ratio[0]:.2f} and {ratio[1]:.2f}"
+
+    def in_view(r):
+        return "light_in_view" in r["lispsm"]["status"]
 
     first = results["pairs"][0]
-    across = "the sun at right angles"
-    behind = "behind the camera"
     return (f"The scene {first['scene']} at {first['map']}², {first['view'][0]} × "
-            f"{first['view'][1]} pixels. Geometric mean of `lispsm` over `min-sm`: "
-            f"{mean(lambda a: a > 80, 'min-sm')} with {across}, "
-            f"{mean(lambda a: a < 60, 'min-sm')} {behind}; over `sm`: "
-            f"{mean(lambda a: a > 80, 'sm')} and {mean(lambda a: a < 60, 'sm')}.\n\n" +
+            f"{first['view'][1]} pixels. Geometric means of `lispsm` over `min-sm` and over `sm`:\n"
+            f"{means(lambda r: angle_of(r['sm']) > 80)} with the sun at right angles, "
+            f"{means(lambda r: angle_of(r['sm']) <= 80 and not in_view(r))} with the sun behind "
+            f"the camera but outside\nthe view cone, {means(in_view)} inside it, where the map "
+            "stays uniform.\n\n" +
             table(["camera", "light to view", "`sm`", "`min-sm`", "`lispsm`", "over `min-sm`",
                    "over `sm`", "status"], rows))
 

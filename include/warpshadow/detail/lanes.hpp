@@ -73,7 +73,8 @@ template <typename L> L square_roots(const L& value) {
 #if defined(WARPSHADOW_ROOTS)
         return WARPSHADOW_ROOTS(value);
 #elif defined(WARPSHADOW_PAIR_OF_ROOTS)
-        lanes<2> parts[sizeof(L) / sizeof(lanes<2>)];
+        constexpr std::size_t pairs = sizeof(L) / (2 * sizeof(double));
+        lanes<2> parts[pairs];
         std::memcpy(parts, &value, sizeof value);
         for (lanes<2>& part : parts) {
             part = WARPSHADOW_PAIR_OF_ROOTS(part);
@@ -82,7 +83,8 @@ template <typename L> L square_roots(const L& value) {
         std::memcpy(&roots, parts, sizeof roots);
         return roots;
 #else
-        double parts[sizeof(L) / sizeof(double)];
+        constexpr std::size_t count = sizeof(L) / sizeof(double);
+        double parts[count];
         store(parts, value);
         for (double& part : parts) {
             part = std::sqrt(part);
