@@ -94,6 +94,14 @@ def folds():
         pieces = "none tried" if enough is None else "1" if enough == 1 else f"1/{enough}"
         lines.append(f"| {entry['scene']} | {limit} | {max(entry['mix']):.2f} | " +
                      " | ".join(cells) + f" | {every} | {pieces} |")
+    limits = list(dict.fromkeys(entry["shear_limit"] for entry in results["entries"]))
+    for limit in limits:
+        found = [entry for entry in results["entries"] if entry["shear_limit"] == limit]
+        shares = [sum(entry["flipped"][size] for entry in found) / len(found) for size in sizes]
+        shares.append(sum(entry["flipped_of_all"] for entry in found) / len(found))
+        cells = [f"{share:.1e}" if share else "0" for share in shares]
+        lines.append(f"| all scenes | {'∞' if limit is None else f'{limit:g}'} | | " +
+                     " | ".join(cells) + " | |")
     return lines
 
 
@@ -104,6 +112,8 @@ def main():
     text = PAGE.read_text(encoding="utf-8")
     updated = text
     for name, table in (("chain", chain), ("views", views), ("folds", folds)):
+        if not (FOLDER / f"{name}.json").exists():
+            continue  # not measured yet
         block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
         if not block.search(updated):
             sys.exit(f"docs/rasterising.md has no {name} block")

@@ -48,8 +48,8 @@ T mean_texel_side(const table_view<T, Node>& rows, const table_view<T, Node>& co
 }
 
 /// Mean side up to which a warp is left as it is, and from which on there is none.
-template <typename T> inline constexpr T side_of_full_warp = T(0.85);
-template <typename T> inline constexpr T side_of_no_warp = T(0.95);
+template <typename T> inline constexpr T side_of_full_warp = T(0.95);
+template <typename T> inline constexpr T side_of_no_warp = T(1);
 
 /// Share λ of the identity to be mixed into tables.
 ///
