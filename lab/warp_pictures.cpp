@@ -38,6 +38,52 @@ std::vector<float> shades(const std::vector<std::uint32_t>& counts) {
     return result;
 }
 
+/// Functions of u in orange and of v in blue, nine of each at most.
+named_picture function_picture(const ws::table_view<float>& rows,
+                               const ws::table_view<float>& columns, int size) {
+    constexpr int most = 9;
+    canvas result("warp-functions", size);
+    result.line({0.0, 0.0}, {1.0, 1.0}, glm::vec3(0.35f)); // the identity
+    for (const ws::table_view<float>* table : {&rows, &columns}) {
+        const glm::vec3 colour =
+            table == &rows ? glm::vec3(0.95f, 0.6f, 0.2f) : glm::vec3(0.3f, 0.6f, 0.95f);
+        const int shown = std::min(table->rows, most);
+        for (int i = 0; i < shown; ++i) {
+            const int row = (2 * i + 1) * table->rows / (2 * shown);
+            const std::size_t first =
+                static_cast<std::size_t>(row) * (static_cast<std::size_t>(table->cells) + 1);
+            const auto node = [&](int k) {
+                return glm::dvec2(
+                    static_cast<double>(k) / table->cells,
+                    static_cast<double>(table->nodes[first + static_cast<std::size_t>(k)]));
+            };
+            for (int k = 0; k < table->cells; ++k) {
+                result.line(node(k), node(k + 1), colour);
+            }
+        }
+    }
+    return std::move(result.picture);
+}
+
+/// Texels for an area of the unwarped map against those of a map without a warp: red for more, blue
+/// for less, full at 16 times and a sixteenth.
+named_picture resolution_picture(const ws::table_view<float>& rows,
+                                 const ws::table_view<float>& columns, int size) {
+    canvas result("effective-resolution", size);
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const glm::vec2 p = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
+                                static_cast<float>(size);
+            const float density = glm::determinant(ws::jacobian(rows, columns, p));
+            const float t = std::clamp(std::log2(std::max(density, 1e-6f)) / 4.0f, -1.0f, 1.0f);
+            result.set(x, y,
+                       t > 0.0f ? glm::vec3(1.0f, 1.0f - 0.8f * t, 1.0f - 0.9f * t)
+                                : glm::vec3(1.0f + 0.9f * t, 1.0f + 0.8f * t, 1.0f));
+        }
+    }
+    return std::move(result.picture);
+}
+
 } // namespace
 
 std::vector<named_picture> warp_pictures(const warp_readback& warp) {
@@ -88,6 +134,8 @@ std::vector<named_picture> warp_pictures(const warp_readback& warp) {
         result.push_back(std::move(between.picture));
     }
     result.push_back(std::move(grid.picture));
+    result.push_back(function_picture(rows, columns, size));
+    result.push_back(resolution_picture(rows, columns, size));
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Pictures that explain a warp: importance before and after, and the grid that the tables draw.
+// Pictures that explain a warp: importance before and after, and what the tables make of the map.
 #pragma once
 
 #include "lab/methods.hpp"
@@ -21,7 +21,8 @@ struct warp_readback {
     std::vector<std::uint32_t> half_warped; ///< counts after the rows, transposed; or none
 };
 
-/// "importance", "importance-rows-warped" (Milet et al. 2015, figure 4) and "warp-grid" (figure 5).
+/// "importance", "importance-rows-warped" (Milet et al. 2015, figure 4), "warp-grid" (figure 5),
+/// "warp-functions" and "effective-resolution".
 std::vector<named_picture> warp_pictures(const warp_readback& warp);
 
 /// Depth, contrast stretched to what is there, near is dark.

@@ -141,9 +141,10 @@ def times(runs):
 DRAWING = ("g-buffer", "shadow map", "cut triangles", "shadow test")
 
 
-def note(results):
+def note(results, runs):
     width, height = results["view"]
-    return (f"{width} × {height} pixels, against ray-traced shadows, on "
+    sides = " and ".join(f"{m}²" for m in runs.maps)
+    return (f"{len(runs.views)} views, maps of {sides}, {width} × {height} pixels, against ray-traced shadows, on "
             f"{results['device']['renderer']}. Written by `./run.sh measure warps`.\n")
 
 
@@ -158,7 +159,7 @@ def main():
     results = json.loads(RESULTS.read_text(encoding="utf-8"))
     runs = Runs(results["runs"])
     updated = text
-    for name, content in (("claims", claims(runs) + "\n" + note(results)),
+    for name, content in (("claims", claims(runs) + "\n" + note(results, runs)),
                           ("methods", methods(runs)), ("views", views(runs)),
                           ("times", times(runs))):
         block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
