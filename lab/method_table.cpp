@@ -18,7 +18,8 @@ constexpr std::array methods{
     method{.name = "stable", .base = map_base::stable},
     method{.name = "min-sm", .base = map_base::minimal},
     method{.name = "dv", .desired_view = true},
-    method{.name = "dv-4", .partitions = 4, .desired_view = true},
+    // sample distribution shadow maps (Lauritzen et al. 2011), in equal ratios of depth
+    method{.name = "sdsm", .partitions = 4, .desired_view = true},
     method{.name = "lispsm", .base = map_base::lispsm},
     method{.name = "fitted", .desired_view = true, .fitted = true},
     method{.name = "fitted-2", .partitions = 2, .desired_view = true, .fitted = true},

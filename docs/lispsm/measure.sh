@@ -4,7 +4,7 @@ small=(--view 512x384 --repeat 1)
 command_bench lispsm_accuracy "$out/accuracy.md" "$out/accuracy.json"
 for scene in outdoor interior colonnade leaves; do
     lab --scene "$scene" --camera 0 --camera 1 --light 0 --light 1 --map 512,1024 \
-        --methods sm,dv,dv-4,fitted,fitted-2 "${small[@]}" --out "$out/views-$scene"
+        --methods sm,dv,sdsm,fitted,fitted-2 "${small[@]}" --out "$out/views-$scene"
 done
 # per camera two suns at right angles to its view and two behind it
 pairs=(

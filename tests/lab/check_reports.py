@@ -13,13 +13,13 @@ import sys
 from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-METHODS = ["sm", "stable", "min-sm", "dv", "dv-4", "lispsm", "fitted", "fitted-2", "min-sm-notw",
+METHODS = ["sm", "stable", "min-sm", "dv", "sdsm", "lispsm", "fitted", "fitted-2", "min-sm-notw",
            "lispsm-notw", "fitted-notw", "notw", "notw-nodv", "notw-edges", "notw-oracle",
            "rtw-forward", "rtw-backward", "rtw-hybrid"]
 FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-gs", "cube6-efc-gs",
                     "dpsm", "dpsm-cull", "dpsm-pc", "dpsm-gs", "dpsm-cull-gs", "dpsm-pc-gs",
                     "cube-notw", "dpsm-notw"]
-NOT_FOR_POINTS = ["sm", "stable", "dv-4", "fitted-2", "notw", "notw-nodv", "notw-edges",
+NOT_FOR_POINTS = ["sm", "stable", "sdsm", "fitted-2", "notw", "notw-nodv", "notw-edges",
                   "notw-oracle", "rtw-forward", "rtw-backward", "rtw-hybrid"]
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
