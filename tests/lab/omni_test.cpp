@@ -46,6 +46,11 @@ int warped_triples() {
     return std::getenv("WARPSHADOW_OMNI_TRIPLES") == nullptr ? triples() / 4 : 1;
 }
 
+/// The same for one pass that draws all maps, which geometry shaders make slow.
+int layered_triples() {
+    return std::getenv("WARPSHADOW_OMNI_TRIPLES") == nullptr ? 3 : 1; // odd: one view and two
+}
+
 constexpr glm::ivec2 view{64, 48};
 constexpr int triples_of_a_scene = 8;
 
@@ -239,6 +244,9 @@ TEST_CASE("culling changes no pixel, for one view and for two at once") {
             dark += static_cast<std::size_t>(std::count(all.begin(), all.end(), 1));
             lit += static_cast<std::size_t>(std::count(all.begin(), all.end(), 0));
             for (const lab::omni_way& way : ways) {
+                if (way.layered && i % layered_triples() != 0) {
+                    continue;
+                }
                 INFO("triple " << i << (way.hemispheres ? ", paraboloids" : ", faces")
                                << (way.cull_maps ? ", maps culled" : "")
                                << (way.cull_objects ? ", objects culled" : "")
@@ -335,7 +343,7 @@ TEST_CASE("tables inside paraboloids put texels where they are seen") {
     const lab::g_buffer_samples samples = renderer.samples(camera, light);
     const std::vector<std::uint8_t> truth = rays.shadows(samples, light).shadowed;
     const auto wrong = [&](const char* name) {
-        const lab::method_result result = renderer.run(name, {camera, light, 128, 1, 1});
+        const lab::method_result result = renderer.run(name, {camera, light, 64, 1, 1});
         CHECK(result.maps == 2);
         CHECK(result.status == std::vector<std::string>{});
         const lab::comparison c = lab::compare(samples, truth, result.shadowed);
