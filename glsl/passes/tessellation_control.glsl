@@ -4,7 +4,7 @@
 // Patches of three corners, each with its place in the unwarped map and its depth there: clipped to
 // the map and divided by w. The answer for an edge depends on the edge alone, to the bit, so patches
 // on both sides cut it alike. Draw with tessellation_evaluation.glsl. Include
-// warpshadow/tessellation.glsl before.
+// warpshadow/warp.glsl, edge_walk.glsl and tessellation.glsl before.
 #ifndef WS_BINDING_ROWS
 #define WS_BINDING_ROWS 0
 #endif
