@@ -15,7 +15,7 @@
 #include <warpshadow/projective.hpp>
 #include <warpshadow/status.hpp>
 #include <warpshadow/tessellation.hpp>
-#include <warpshadow/warp_strength.hpp>
-#include <warpshadow/warped_hull.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warp_strength.hpp>
+#include <warpshadow/warped_hull.hpp>
