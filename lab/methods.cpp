@@ -371,10 +371,19 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     s.fit_us.clear();
     s.culling_us.clear();
     // the first frame warms up and, with tables, finds how long the lists must be
+    bool grown = false;
     do {
+        shadows = s.told(how, request);
         s.forget_counts();
         frame(true);
-    } while (s.grow_lists(how));
+        grown = s.grow_lists(how);
+        if (!grown && how.tables.shadows == known_shadows::last_frame) {
+            // the shadows of a first frame make another warp, which may need more
+            s.forget_counts();
+            frame(true);
+            grown = s.grow_lists(how);
+        }
+    } while (grown);
     glFinish();
 
     std::vector<double> frames;
