@@ -110,7 +110,7 @@ def speed():
         lanes = measured[key]["doubles_at_once"]
         parts.append(f"### {flags}, {lanes} doubles at once\n\n" + lines_of(
             ["", "float", "double", "times as fast, float", "asked for"], rows, "lrrlr"))
-    parts.append(f"{measured['processor']}, {measured['o2']['compiler']}, medians of "
+    parts.append(f"{measured['processor']}, {measured['o2']['compiler']}, the fastest of "
                  f"{measured['o2']['repetitions']} interleaved repetitions.\n")
     return "\n".join(parts)
 
