@@ -5,6 +5,7 @@
 #include "lab/omni.hpp"
 #include "lab/scene_builder.hpp"
 #include "lab/scene_detail.hpp"
+#include "lab/tables.hpp"
 #include "lab/truth.hpp"
 #include "lab/vpl.hpp"
 
@@ -120,9 +121,9 @@ int maps_in_use(const lab::light_maps& chosen) {
 class stage {
   public:
     explicit stage(unsigned seed)
-        : world_(boxes(seed)), gpu_(world_, view), omni_(gpu_), faces_(32, 6, false),
-          hemispheres_(32, 2, false), warped_faces_(32, 6, true), warped_hemispheres_(32, 2, true) {
-    }
+        : world_(boxes(seed)), gpu_(world_, view), omni_(gpu_), tables_(gpu_), raster_(gpu_),
+          faces_(32, 6, 0, 0), hemispheres_(32, 2, 0, 0), warped_faces_(32, 6, 32, 32),
+          warped_hemispheres_(32, 2, 32, 32) {}
 
     void look(eye& e, const lab::camera_view& camera) {
         e.camera = camera;
@@ -165,7 +166,7 @@ class stage {
         gpu_.use(seen.seen, chosen, light.light);
         maps_drawn = maps_in_use(chosen);
         do {
-            gpu_.forget_counts();
+            raster_.forget_counts();
             omni_.raster().forget_counts();
             poison(maps);
             for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
@@ -173,14 +174,14 @@ class stage {
                     continue;
                 }
                 gpu_.crop_to_desired_view(maps, i);
-                gpu_.build_tables(maps, i, false);
+                tables_.build(maps, i, {}, seen.frustum, {}, false);
                 if (way.hemispheres) {
                     omni_.draw_warped(maps, i, light, true);
                 } else {
-                    gpu_.draw_warped_map(maps, i, true);
+                    raster_.draw_map(maps, i, {}, nullptr, true);
                 }
             }
-        } while (gpu_.grow_lists() || omni_.raster().grow_lists());
+        } while (raster_.grow_lists() || omni_.raster().grow_lists());
         if (way.hemispheres) {
             omni_.test_hemispheres(maps, chosen, light, true);
         } else {
@@ -198,6 +199,8 @@ class stage {
     lab::scene world_;
     lab::passes gpu_;
     lab::omni_passes omni_;
+    lab::table_passes tables_;
+    lab::warped_raster raster_;
     lab::map_resources faces_, hemispheres_, warped_faces_, warped_hemispheres_;
 };
 

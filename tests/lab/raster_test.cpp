@@ -77,7 +77,7 @@ struct drawn_maps {
     gl::headless_context context;
     lab::passes gpu{world, {32, 24}};
     lab::warped_raster raster{gpu};
-    lab::map_resources maps{size, 1, true};
+    lab::map_resources maps{size, 1, size, size};
     lab::g_buffer seen{{32, 24}};
     std::vector<float> rows = steep_table(0.25, 0.3, 0.06);
     std::vector<float> columns = steep_table(0.7, -0.4, 0.09);
