@@ -187,7 +187,15 @@ std::set<std::string> needed_topics(const translation& source, std::string_view 
 
 std::string topic_text(const translation& source, std::string_view topic, std::string_view prefix) {
     std::string text = head_line(hash_of(source, topic));
-    const std::set<std::string> needed = needed_topics(source, topic);
+    // a file that is included needs whatever all of its own functions do
+    std::set<std::string> needed = needed_topics(source, topic);
+    for (std::size_t before = 0; before != needed.size();) {
+        before = needed.size();
+        for (const std::string& each : std::set<std::string>(needed)) {
+            needed.merge(needed_topics(source, each));
+        }
+    }
+    needed.erase(std::string(topic));
     std::string list;
     for (const std::string& each : source.topics) {
         if (needed.count(each) != 0) {
