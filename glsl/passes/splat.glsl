@@ -83,7 +83,7 @@ ivec2 ws_sample_cell(ivec2 pixel, ivec2 cells, out uint weight)
     return ivec2(i, j);
 }
 
-void ws_count_sample(ivec2 cell, uint weight)
+void ws_add_to_cell(ivec2 cell, uint weight)
 {
     if (cell.x >= 0) {
 #ifdef WS_SPLAT_LARGEST
@@ -107,7 +107,7 @@ void main()
         uint other;
         ivec2 next = ws_sample_cell(at * 2 + ivec2(t < 3 ? 1 : 0, t / 2), cells, other);
         if (next != cell) {
-            ws_count_sample(cell, weight);
+            ws_add_to_cell(cell, weight);
             cell = next;
             weight = other;
             continue;
@@ -118,7 +118,7 @@ void main()
         weight += other;
 #endif
     }
-    ws_count_sample(cell, weight);
+    ws_add_to_cell(cell, weight);
 #elif defined(WS_SPLAT_BALLOT)
     ivec2 cell = ws_sample_cell(at, cells, weight);
     int index = cell.x < 0 ? -1 : cell.y * imageSize(ws_counts).x + cell.x;
@@ -134,6 +134,6 @@ void main()
         }
     }
 #else
-    ws_count_sample(ws_sample_cell(at, cells, weight), weight);
+    ws_add_to_cell(ws_sample_cell(at, cells, weight), weight);
 #endif
 }
