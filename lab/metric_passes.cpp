@@ -57,8 +57,9 @@ texel_metric metric_of(const std::vector<glm::vec4>& extents, int map_size, glm:
     std::vector<ws::texel_extent<double>> facing;
     for (const glm::vec4& each : extents) {
         if (each.z >= 0.0f) {
-            on_receivers.push_back({each.x, each.y, each.z});
-            facing.push_back({each.w, each.w, each.w});
+            const glm::dvec4 m(each);
+            on_receivers.push_back({m.x, m.y, m.z});
+            facing.push_back({m.w, m.w, m.w});
         }
     }
     return {summary_of(on_receivers, map_size, view), summary_of(facing, map_size, view)};

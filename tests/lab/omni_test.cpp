@@ -31,12 +31,12 @@ namespace ws = warpshadow;
 
 namespace {
 
-/// Camera, light and scene triples: 1000, or fewer where they are not optimised.
+/// Camera, light and scene triples: 160, or fewer where they are not optimised.
 int triples() {
 #ifdef NDEBUG
-    const int usual = 1000;
+    const int usual = 160;
 #else
-    const int usual = 100;
+    const int usual = 24;
 #endif
     const char* const asked = std::getenv("WARPSHADOW_OMNI_TRIPLES");
     return asked == nullptr ? usual : std::max(std::atoi(asked), 1);

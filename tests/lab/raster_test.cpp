@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -113,7 +114,7 @@ struct drawn_maps {
             if (std::abs(map[at] - ideal[at]) < 1e-4f) {
                 continue;
             }
-            double needed = INFINITY;
+            double needed = std::numeric_limits<double>::infinity();
             for (const double radius : radii) {
                 std::vector<glm::dvec3> from, to;
                 for (int k = 0; k < 128; ++k) {
