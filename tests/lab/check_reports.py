@@ -98,7 +98,9 @@ def check_results(results):
         # a paraboloid has no matrix, and the ray tracer no texels
         measured = not entry["method"].startswith(("dpsm", "raytraced"))
         keys = RUN_KEYS | (METRIC_KEYS if measured else set())
-        assert set(entry) - {"bias", "filter"} == keys, set(entry) ^ keys
+        if "notw" in entry["method"] or entry["method"].startswith("rtw"):
+            keys |= {"weakened", "predicted_texel_side"}
+        assert set(entry) - {"bias", "filter", "raster"} == keys, set(entry) ^ keys
         for m in (entry["m"], entry["m_facing"]) if measured else ():
             assert 0 <= m["p50"] <= m["p99"] <= m["max"] and 0 <= m["share_above_1"] <= 1
             assert (m["max"] > 0) == (entry["samples"] > 0)
