@@ -98,7 +98,7 @@ warped_stretch<T> warp_stretch(const table_view<T, Node>& rows, const table_view
     glm::vec<2, T> middle = (p0 + p1) * T(0.5);
     // U, in one cell between two rows
     int cells = table_cells(rows);
-    int k = glm::clamp(int(middle.x * T(cells)), 0, cells - 1);
+    int k = glm::min(int(clamp_to_unit(middle.x) * T(cells)), cells - 1);
     row_blend<T> blend = blend_rows(middle.y, table_rows(rows));
     T last = T(table_rows(rows) - 1);
     T w0 = glm::clamp(p0.y * T(table_rows(rows)) - T(0.5), T(0), last) - T(blend.row0);
@@ -116,15 +116,18 @@ warped_stretch<T> warp_stretch(const table_view<T, Node>& rows, const table_view
 
     // V, in one cell but across as many rows as the curved U meets
     cells = table_cells(columns);
-    k = glm::clamp(int(middle.y * T(cells)), 0, cells - 1);
+    k = glm::min(int(clamp_to_unit(middle.y) * T(cells)), cells - 1);
     s0 = p0.y * T(cells) - T(k);
     s1 = p1.y * T(cells) - T(k);
     int count = table_rows(columns);
     T x0 = stretch.from.x * T(count) - T(0.5);
     T x1 = stretch.to.x * T(count) - T(0.5);
     T slack = stretch.bend.x * T(count);
-    int first = int(glm::clamp(glm::floor(glm::min(x0, x1) - slack), T(-1), T(count - 1)));
-    int end = int(glm::clamp(glm::ceil(glm::max(x0, x1) + slack), T(first + 1), T(count)));
+    // compared before they are converted, so that a NaN is a few rows and not all numbers
+    T low = glm::floor(glm::min(x0, x1) - slack);
+    T high = glm::ceil(glm::max(x0, x1) + slack);
+    int first = low > T(-1) ? (low < T(count - 1) ? int(low) : count - 1) : -1;
+    int end = high > T(first + 1) ? (high < T(count) ? int(high) : count) : first + 1;
     glm::vec<2, T> node(T(0));  // of the functions, at both nodes of the cell
     glm::vec<2, T> slope(T(0)); // from row to row
     glm::vec<2, T> kinks(T(0));
