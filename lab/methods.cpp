@@ -444,7 +444,7 @@ method_result renderer::run(std::string_view name, const view_request& request) 
                                              1e3 * s.omni.cutting_ms());
         }
     }
-    if (how.warp) {
+    if (how.warp && !how.omni.hemispheres) {
         result.weakened = s.weakened;
         result.mean_side = static_cast<double>(s.warped.mean_side());
     }

@@ -6,7 +6,7 @@
 #include "gl/objects.hpp"
 #include "lab/omni_mesh.hpp"
 #include "lab/passes.hpp"
-#include "lab/warped_raster.hpp"
+#include "lab/triangle_lists.hpp"
 
 #include <array>
 #include <cstddef>
@@ -24,22 +24,17 @@ class hemisphere_raster {
     void draw(map_resources& maps, std::size_t side, double far_distance, bool count);
 
     /// Makes the lists large enough for what was counted since the last call; false if they were.
-    bool grow_lists();
-    void forget_counts() { counted_.clear(); }
-    /// Of the maps drawn since they were last forgotten.
-    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
-    [[nodiscard]] std::size_t list_bytes() const;
+    bool grow_lists() { return lists_.grow(); }
+    void forget_counts() { lists_.forget_counts(); }
+    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return lists_.counted(); }
+    [[nodiscard]] std::size_t list_bytes() const { return lists_.bytes(); }
 
   private:
-    void set_capacity(std::size_t ready_count, std::size_t waiting_count);
     void cut(const map_resources& maps);
 
     passes& gpu_;
     gl::program set_up_, cut_, draw_;
-    gl::buffer counters_, ready_;
-    std::array<gl::buffer, 2> waiting_;
-    gl::vertex_array nothing_;
-    std::vector<triangle_counts> counted_;
+    triangle_lists lists_;
 };
 
 } // namespace lab

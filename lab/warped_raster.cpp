@@ -24,17 +24,9 @@ constexpr int most_halvings = 20;
 
 constexpr std::size_t source_bytes = 48;
 constexpr std::size_t piece_bytes = 32;
-constexpr std::size_t most_pieces = std::size_t{1} << 23;
 
 /// Buffer bindings of the shaders.
-enum binding : GLuint {
-    on_sides = 5,
-    on_counts = 6,
-    on_ready = 7,
-    on_waiting = 8,
-    on_next = 9,
-    on_source = 10
-};
+enum binding : GLuint { on_sides = 5, on_source = 10 };
 
 struct kind_name {
     std::string_view name;
@@ -87,8 +79,7 @@ std::string raster_name(const raster_choice& choice) {
 }
 
 warped_raster::warped_raster(passes& gpu)
-    : gpu_(gpu), counters_(sizeof(triangle_counts), nullptr, GL_DYNAMIC_DRAW),
-      sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
+    : gpu_(gpu), lists_(piece_bytes), sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
     const std::vector<std::string> names{
         "RASTER_RULE " + std::to_string(static_cast<int>(raster_kind::rule)),
         "RASTER_BOUND " + std::to_string(static_cast<int>(raster_kind::bound)),
@@ -104,14 +95,7 @@ warped_raster::warped_raster(passes& gpu)
     const std::size_t triangles = gpu_.world().triangles.size();
     sources_ =
         gl::buffer((triangles + triangles / 2 + 1024) * source_bytes, nullptr, GL_DYNAMIC_COPY);
-    set_capacity(2 * triangles + 65536, 65536);
-}
-
-void warped_raster::set_capacity(std::size_t ready, std::size_t waiting) {
-    ready_ = gl::buffer(ready * piece_bytes, nullptr, GL_DYNAMIC_COPY);
-    for (gl::buffer& list : waiting_) {
-        list = gl::buffer(waiting * piece_bytes, nullptr, GL_DYNAMIC_COPY);
-    }
+    lists_.make_room_for(triangles);
 }
 
 void warped_raster::prepare(std::size_t index, int size, const raster_choice& choice) {
@@ -169,15 +153,11 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
     }
     gpu_.timed_pass("set up triangles", [&] {
         prepare(index, maps.size, choice);
-        const triangle_counts none;
-        counters_.write(0, sizeof none, &none);
+        lists_.begin();
         gpu_.mesh().positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
         gpu_.mesh().indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
         gpu_.face_normal_buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
-        counters_.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
-        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
         sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
-        waiting_[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
         const int triangles = static_cast<int>(gpu_.world().triangles.size());
         set_up_.set("triangle_count", triangles);
         set_up_.dispatch(triangles);
@@ -185,24 +165,7 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
     });
     gpu_.timed_pass("cut triangles", [&] {
         // three halvings, one of each edge, make a triangle half as large; mostly few are needed
-        const int rounds = choice.kind < raster_kind::rule ? 0 : 3 * most_halvings;
-        for (int round = 0; round < rounds; ++round) {
-            const std::size_t source = static_cast<std::size_t>(round % 2);
-            std::array<std::uint32_t, 2> waiting{};
-            counters_.read(offsetof(triangle_counts, waiting), sizeof waiting, waiting.data());
-            if (waiting[source] == 0) {
-                break;
-            }
-            const std::uint32_t zero = 0;
-            counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
-                            sizeof zero, &zero);
-            waiting_[source].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
-            waiting_[1 - source].bind_base(GL_SHADER_STORAGE_BUFFER, on_next);
-            cut_.set("list", static_cast<int>(source));
-            cut_.set("last_round", static_cast<int>(round + 1 == rounds));
-            cut_.dispatch(static_cast<int>(std::min<std::uint32_t>(waiting[source], 64 * 64)));
-            gl::wait_for_writes();
-        }
+        lists_.cut(cut_, choice.kind < raster_kind::rule ? 0 : 3 * most_halvings);
     });
     gpu_.timed_pass("shadow map", [&] {
         maps.targets[index].bind();
@@ -211,15 +174,11 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
                                   : choice.kind == raster_kind::exact ? draw_exact_
                                                                       : draw_fragment_;
         draw.use();
-        ready_.bind_base(GL_SHADER_STORAGE_BUFFER, on_ready);
         sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
-        nothing_.bind();
-        counters_.bind(GL_DRAW_INDIRECT_BUFFER);
-        glDrawArraysIndirect(GL_TRIANGLES, nullptr);
-        gl::wait_for_writes();
+        lists_.draw();
     });
     if (count) {
-        counted_.push_back(counters_.read<triangle_counts>().front());
+        lists_.count();
     }
 }
 
@@ -250,28 +209,15 @@ void warped_raster::trace_map(map_resources& maps, std::size_t index, const ray_
 }
 
 bool warped_raster::grow_lists() {
-    const auto any_of = [&](std::uint32_t triangle_counts::*count) {
-        return std::any_of(counted_.begin(), counted_.end(),
-                           [&](const triangle_counts& each) { return each.*count > 0; });
-    };
-    const std::size_t ready = ready_.bytes() / piece_bytes;
-    const std::size_t waiting = waiting_[0].bytes() / piece_bytes;
     // what was lost is a source or a piece: both lists grow
-    const bool lost = any_of(&triangle_counts::lost);
-    const bool crowded = any_of(&triangle_counts::crowded);
-    if ((!lost && !crowded) || ready > most_pieces || waiting > most_pieces) {
+    const bool lost = lists_.lost_some();
+    if (!lists_.grow()) {
         return false;
     }
-    counted_.clear();
-    set_capacity(lost ? 2 * ready : ready, crowded ? 2 * waiting : waiting);
     if (lost) {
         sources_ = gl::buffer(2 * sources_.bytes(), nullptr, GL_DYNAMIC_COPY);
     }
     return true;
-}
-
-std::size_t warped_raster::list_bytes() const {
-    return sources_.bytes() + ready_.bytes() + waiting_[0].bytes() + waiting_[1].bytes();
 }
 
 } // namespace lab

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lab/passes.hpp"
+#include "lab/triangle_lists.hpp"
 
 #include <array>
 #include <cstddef>
@@ -37,19 +38,6 @@ raster_choice parse_raster(const std::string& text);
 /// The text of a choice.
 std::string raster_name(const raster_choice& choice);
 
-/// Mirror of `triangle_counts` in shaders/triangle_counts.glsl.
-struct triangle_counts {
-    std::uint32_t vertex_count = 0;
-    std::uint32_t instance_count = 1;
-    std::uint32_t first_vertex = 0;
-    std::uint32_t base_instance = 0;
-    std::array<std::uint32_t, 2> waiting{};
-    std::uint32_t sources = 0;
-    std::uint32_t lost = 0;
-    std::uint32_t crowded = 0;
-    std::uint32_t uncut = 0;
-};
-
 /// Draws maps with tables.
 class warped_raster {
   public:
@@ -68,24 +56,20 @@ class warped_raster {
     /// Makes the triangle lists large enough for what was counted since the last call; false if
     /// they were.
     bool grow_lists();
-    void forget_counts() { counted_.clear(); }
-    /// Of the maps drawn since they were last forgotten.
-    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
-    [[nodiscard]] std::size_t list_bytes() const;
+    void forget_counts() { lists_.forget_counts(); }
+    [[nodiscard]] const std::vector<triangle_counts>& counted() const { return lists_.counted(); }
+    [[nodiscard]] std::size_t list_bytes() const { return sources_.bytes() + lists_.bytes(); }
     /// What the last tables were predicted to do to the side of the texels in view.
     [[nodiscard]] float mean_side() const { return mean_side_; }
 
   private:
-    void set_capacity(std::size_t ready, std::size_t waiting);
     void prepare(std::size_t index, int size, const raster_choice& choice);
     void trace_map(map_resources& maps, std::size_t index, const ray_tracer& rays);
 
     passes& gpu_;
-    gl::buffer counters_, sources_, ready_, sides_;
-    std::array<gl::buffer, 2> waiting_;
-    gl::vertex_array nothing_;
+    triangle_lists lists_;
+    gl::buffer sources_, sides_;
     gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_, predict_, weaken_;
-    std::vector<triangle_counts> counted_;
     float mean_side_ = 1.0f;
 };
 

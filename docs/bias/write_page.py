@@ -9,8 +9,10 @@ The results come from `./run.sh measure bias`.
 
 import json
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "bias.md"
@@ -52,19 +54,8 @@ def main():
     check = sys.argv[1:] == ["--check"]
     if sys.argv[1:] and not check:
         sys.exit(__doc__.strip())
-    text = PAGE.read_text(encoding="utf-8")
-    updated = text
-    for figure in ("figure6", "figure8"):
-        block = re.compile(rf"(<!-- {figure}:begin -->\n).*?(<!-- {figure}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/bias.md has no {figure} block")
-        updated = block.sub(lambda found: found.group(1) + table(figure) + found.group(2), updated)
-    if check:
-        if updated != text:
-            sys.exit("docs/bias.md does not say what docs/bias/*.json say: "
-                     "run docs/bias/write_page.py")
-    else:
-        PAGE.write_text(updated, encoding="utf-8")
+    fill(PAGE, {figure: table(figure) for figure in ("figure6", "figure8")},
+         "docs/bias/write_page.py", check)
 
 
 if __name__ == "__main__":

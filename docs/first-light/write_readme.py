@@ -9,12 +9,13 @@ The results and pictures come from `./run.sh measure first-light`.
 
 import json
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 README = FOLDER.parent.parent / "README.md"
-BLOCK = re.compile(r"(<!-- first-light:begin -->\n).*?(<!-- first-light:end -->)", re.DOTALL)
 NAMES = {
     "sm": "plain shadow map",
     "dv": "focused on what is seen (`dv`)",
@@ -63,16 +64,7 @@ def main():
     check = sys.argv[1:] == ["--check"]
     if sys.argv[1:] and not check:
         sys.exit(__doc__.strip())
-    text = README.read_text(encoding="utf-8")
-    if not BLOCK.search(text):
-        sys.exit("README.md has no first-light block")
-    updated = BLOCK.sub(lambda found: found.group(1) + block() + found.group(2), text)
-    if check:
-        if updated != text:
-            sys.exit("README.md does not say what docs/first-light/results.json says: "
-                     "run docs/first-light/write_readme.py")
-    else:
-        README.write_text(updated, encoding="utf-8")
+    fill(README, {"first-light": block()}, "docs/first-light/write_readme.py", check)
 
 
 if __name__ == "__main__":

@@ -9,8 +9,10 @@ The results come from `./run.sh measure geometry`.
 
 import json
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "geometry.md"
@@ -167,21 +169,9 @@ def main():
     check = sys.argv[1:] == ["--check"]
     if sys.argv[1:] and not check:
         sys.exit(__doc__.strip())
-    text = PAGE.read_text(encoding="utf-8")
-    updated = text
-    for name, table in (("failures", failures), ("speed", speed), ("waste", waste), ("yaw", yaw),
-                        ("frames", frames)):
-        block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/geometry.md has no {name} block")
-        updated = block.sub(lambda found, table=table: found.group(1) + table() + found.group(2),
-                            updated)
-    if check:
-        if updated != text:
-            sys.exit("docs/geometry.md does not say what docs/geometry/*.json say: "
-                     "run docs/geometry/write_page.py")
-    else:
-        PAGE.write_text(updated, encoding="utf-8")
+    blocks = {"failures": failures(), "speed": speed(), "waste": waste(), "yaw": yaw(),
+              "frames": frames()}
+    fill(PAGE, blocks, "docs/geometry/write_page.py", check)
 
 
 if __name__ == "__main__":

@@ -11,8 +11,10 @@ With --gather the results are first collected from the reports in FOLDER, which 
 import json
 import math
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "lispsm.md"
@@ -179,20 +181,9 @@ def main():
     elif arguments and not check:
         sys.exit(__doc__.strip())
     results = json.loads(RESULTS.read_text(encoding="utf-8"))
-    text = PAGE.read_text(encoding="utf-8")
-    updated = text
-    for name, write in (("accuracy", accuracy), ("pairs", pairs), ("views", views),
-                        ("paths", paths)):
-        block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/lispsm.md has no {name} block")
-        updated = block.sub(lambda found: found.group(1) + write(results) + found.group(2), updated)
-    if check:
-        if updated != text:
-            sys.exit("docs/lispsm.md does not say what docs/lispsm/results.json says: "
-                     "run docs/lispsm/write_page.py")
-    else:
-        PAGE.write_text(updated, encoding="utf-8")
+    blocks = {"accuracy": accuracy(results), "pairs": pairs(results), "views": views(results),
+              "paths": paths(results)}
+    fill(PAGE, blocks, "docs/lispsm/write_page.py", check)
 
 
 if __name__ == "__main__":

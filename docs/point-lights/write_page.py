@@ -10,9 +10,11 @@ It comes from `./run.sh measure point-lights`.
 import json
 import math
 import pathlib
-import re
 import statistics
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "point-lights.md"
@@ -270,14 +272,7 @@ def main():
         "speed": culling_speed(measured),
         "chord": chord_line(measured),
     }
-    text = PAGE.read_text(encoding="utf-8")
-    updated = text
-    for name, content in blocks.items():
-        block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/point-lights.md has no {name} block")
-        updated = block.sub(lambda found: found.group(1) + content + found.group(2), updated)
-    stale = [] if updated == text else [PAGE.name]
+    stale = []
     pictures = plots(measured)
     for name, content in pictures.items():
         file = FOLDER / name
@@ -289,8 +284,7 @@ def main():
     if check and stale:
         sys.exit(f"{', '.join(stale)}: not what measured.json says: "
                  "run docs/point-lights/write_page.py")
-    if not check:
-        PAGE.write_text(updated, encoding="utf-8")
+    fill(PAGE, blocks, "docs/point-lights/write_page.py", check)
 
 
 if __name__ == "__main__":

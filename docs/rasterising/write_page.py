@@ -10,8 +10,10 @@ The results come from `./run.sh measure rasterising`.
 import json
 import math
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "rasterising.md"
@@ -109,22 +111,9 @@ def main():
     check = sys.argv[1:] == ["--check"]
     if sys.argv[1:] and not check:
         sys.exit(__doc__.strip())
-    text = PAGE.read_text(encoding="utf-8")
-    updated = text
-    for name, table in (("chain", chain), ("views", views), ("folds", folds)):
-        if not (FOLDER / f"{name}.json").exists():
-            continue  # not measured yet
-        block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/rasterising.md has no {name} block")
-        lines = "\n".join(table()) + "\n"
-        updated = block.sub(lambda found: found.group(1) + lines + found.group(2), updated)
-    if check:
-        if updated != text:
-            sys.exit("docs/rasterising.md does not say what docs/rasterising/*.json say: "
-                     "run docs/rasterising/write_page.py")
-    else:
-        PAGE.write_text(updated, encoding="utf-8")
+    blocks = {name: "\n".join(table()) + "\n"
+              for name, table in (("chain", chain), ("views", views), ("folds", folds))}
+    fill(PAGE, blocks, "docs/rasterising/write_page.py", check)
 
 
 if __name__ == "__main__":

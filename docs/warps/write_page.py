@@ -11,9 +11,11 @@ of it. The results come from `./run.sh measure warps`.
 import json
 import math
 import pathlib
-import re
 import statistics
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page_blocks import fill  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "warps.md"
@@ -155,23 +157,11 @@ def main():
         reduce(arguments[1])
     elif arguments and not check:
         sys.exit(__doc__.strip())
-    text = PAGE.read_text(encoding="utf-8")
     results = json.loads(RESULTS.read_text(encoding="utf-8"))
     runs = Runs(results["runs"])
-    updated = text
-    for name, content in (("claims", claims(runs) + "\n" + note(results, runs)),
-                          ("methods", methods(runs)), ("views", views(runs)),
-                          ("times", times(runs))):
-        block = re.compile(rf"(<!-- {name}:begin -->\n).*?(<!-- {name}:end -->)", re.DOTALL)
-        if not block.search(updated):
-            sys.exit(f"docs/warps.md has no {name} block")
-        updated = block.sub(lambda found, c=content: found.group(1) + c + found.group(2), updated)
-    if check:
-        if updated != text:
-            sys.exit("docs/warps.md does not say what docs/warps/results.json says: "
-                     "run docs/warps/write_page.py")
-    else:
-        PAGE.write_text(updated, encoding="utf-8")
+    blocks = {"claims": claims(runs) + "\n" + note(results, runs), "methods": methods(runs),
+              "views": views(runs), "times": times(runs)}
+    fill(PAGE, blocks, "docs/warps/write_page.py", check)
 
 
 if __name__ == "__main__":

@@ -90,15 +90,17 @@ template <typename T> T walk_on(edge_walk<T>& walk) {
 /// Warp of a stretch that crosses no line inside, and how far it bends.
 ///
 /// @param rows, columns tables of `warp`
-/// @param p0, p1        its ends in the unwarped map, in the unit square
+/// @param begin, end    its ends in the unwarped map; clamped to the unit square
 template <typename T, typename Node>
 warped_stretch<T> warp_stretch(const table_view<T, Node>& rows, const table_view<T, Node>& columns,
-                               glm::vec<2, T> p0, glm::vec<2, T> p1) {
+                               glm::vec<2, T> begin, glm::vec<2, T> end) {
     warped_stretch<T> stretch;
+    glm::vec<2, T> p0 = clamp_to_square(begin);
+    glm::vec<2, T> p1 = clamp_to_square(end);
     glm::vec<2, T> middle = (p0 + p1) * T(0.5);
     // U, in one cell between two rows
     int cells = table_cells(rows);
-    int k = glm::min(int(clamp_to_unit(middle.x) * T(cells)), cells - 1);
+    int k = glm::min(int(middle.x * T(cells)), cells - 1);
     row_blend<T> blend = blend_rows(middle.y, table_rows(rows));
     T last = T(table_rows(rows) - 1);
     T w0 = glm::clamp(p0.y * T(table_rows(rows)) - T(0.5), T(0), last) - T(blend.row0);
@@ -116,25 +118,25 @@ warped_stretch<T> warp_stretch(const table_view<T, Node>& rows, const table_view
 
     // V, in one cell but across as many rows as the curved U meets
     cells = table_cells(columns);
-    k = glm::min(int(clamp_to_unit(middle.y) * T(cells)), cells - 1);
+    k = glm::min(int(middle.y * T(cells)), cells - 1);
     s0 = p0.y * T(cells) - T(k);
     s1 = p1.y * T(cells) - T(k);
     int count = table_rows(columns);
     T x0 = stretch.from.x * T(count) - T(0.5);
     T x1 = stretch.to.x * T(count) - T(0.5);
     T slack = stretch.bend.x * T(count);
-    // compared before they are converted, so that a NaN is a few rows and not all numbers
+    // compared before they are converted: a NaN of the tables costs a few rows, not all numbers
     T low = glm::floor(glm::min(x0, x1) - slack);
     T high = glm::ceil(glm::max(x0, x1) + slack);
     int first = low > T(-1) ? (low < T(count - 1) ? int(low) : count - 1) : -1;
-    int end = high > T(first + 1) ? (high < T(count) ? int(high) : count) : first + 1;
+    int last_row = high > T(first + 1) ? (high < T(count) ? int(high) : count) : first + 1;
     glm::vec<2, T> node(T(0));  // of the functions, at both nodes of the cell
     glm::vec<2, T> slope(T(0)); // from row to row
     glm::vec<2, T> kinks(T(0));
     glm::vec<2, T> at_x0(T(0));
     glm::vec<2, T> at_x1(T(0));
     T steepest = T(0);
-    for (int j = first; j <= end; ++j) {
+    for (int j = first; j <= last_row; ++j) {
         int row = glm::clamp(j, 0, count - 1);
         glm::vec<2, T> next(table_node(columns, row, k), table_node(columns, row, k + 1));
         if (j > first) {

@@ -43,12 +43,12 @@ template <typename T> T kernel_weight(glm::vec<2, T> tap, T deviations) {
 
 /// Taps along each side of a kernel so that no two are farther apart than a texel.
 ///
-/// @param reach half the kernel's sides in texels
+/// @param reach half the kernel's sides in texels; negative ones count as 0
 /// @param most  largest number, positive
 template <typename T> int kernel_taps(glm::vec<2, T> reach, int most) {
     T sides = T(2) * glm::max(reach.x, reach.y);
-    // compared before it is converted: false for NaN
-    return sides <= T(most) - T(1) ? glm::max(int(glm::ceil(sides)), 1) : most;
+    // raised and compared before it is converted: int holds no -1e33, and NaN is `most`
+    return sides <= T(most) - T(1) ? int(glm::ceil(glm::max(sides, T(1)))) : most;
 }
 
 /// Half the sides of a kernel of fixed size in the scene, in units of what `axes` span.

@@ -98,7 +98,7 @@ def check_results(results):
         # a paraboloid has no matrix, and the ray tracer no texels
         measured = not entry["method"].startswith(("dpsm", "raytraced"))
         keys = RUN_KEYS | (METRIC_KEYS if measured else set())
-        if "notw" in entry["method"] or entry["method"].startswith("rtw"):
+        if measured and ("notw" in entry["method"] or entry["method"].startswith("rtw")):
             keys |= {"weakened", "predicted_texel_side"}
         assert set(entry) - {"bias", "filter", "raster"} == keys, set(entry) ^ keys
         for m in (entry["m"], entry["m_facing"]) if measured else ():

@@ -82,7 +82,10 @@ TEMPLATE_TEST_CASE("splits are finite, positive and in order whatever comes in",
         for (std::size_t i = 0; i < splits.size(); ++i) {
             RC_ASSERT(std::isfinite(splits[i]));
             RC_ASSERT(splits[i] >= T(0));
-            RC_ASSERT(i == 0 || splits[i] >= splits[i - 1]);
+            // an operator of RapidCheck's, not the one that stops at what is true
+            if (i > 0) {
+                RC_ASSERT(splits[i] >= splits[i - 1]);
+            }
         }
     }));
     using T = TestType;
@@ -226,7 +229,9 @@ TEMPLATE_TEST_CASE("each cascade's map holds its slice and keeps its texels", "[
                 RC_ASSERT(abs(clip[0]) <= real(1) + 1e-4);
                 RC_ASSERT(abs(clip[1]) <= real(1) + 1e-4);
             }
-            RC_ASSERT(i == 0 || each.fit.texel > cascades[i - 1].fit.texel);
+            if (i > 0) {
+                RC_ASSERT(each.fit.texel > cascades[i - 1].fit.texel);
+            }
         }
         // turned and moved: the same texels
         auto other = make_frustum(eye + any_direction<T>(1.0, 5.0), any_direction<T>(1.0, 1.0),

@@ -113,6 +113,10 @@ TEMPLATE_TEST_CASE("kernel_taps: no two farther apart than a texel, never more t
             kernel_taps(glm::vec<2, T>(any_coordinate<T>(d), any_coordinate<T>(d)), most);
         RC_ASSERT(any >= 1 && any <= most);
     }));
+    // what int does not hold
+    REQUIRE(kernel_taps(glm::vec<2, T>(T(-1e33)), 16) == 1);
+    REQUIRE(kernel_taps(glm::vec<2, T>(T(1e33)), 16) == 16);
+    REQUIRE(kernel_taps(glm::vec<2, T>(std::numeric_limits<T>::quiet_NaN(), T(0)), 16) == 16);
 }
 
 TEMPLATE_TEST_CASE("Rosen 6.2, in texels: taps are the same texels apart wherever the map is "

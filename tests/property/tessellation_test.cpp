@@ -6,6 +6,7 @@
 // library.
 #include "warp_oracle.hpp"
 
+#include <warpshadow/edge_walk.hpp>
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warped_hull.hpp>
@@ -435,5 +436,39 @@ TEMPLATE_TEST_CASE("positions that are no numbers are clamped to the map", "", f
             CHECK(hull.area >= T(0));
             CHECK(hull.area <= T(4));
         }
+    }
+}
+
+TEMPLATE_TEST_CASE("a stretch between any positions ends, and so does a walk over any tables", "",
+                   float, double) {
+    using T = TestType;
+    const warp_tables<T> t = straight_tables<T>(8);
+    const T nan = std::numeric_limits<T>::quiet_NaN();
+    const T huge = std::numeric_limits<T>::max();
+    const std::array<T, 7> numbers{nan,     huge, -huge,  std::numeric_limits<T>::infinity(),
+                                   T(0.25), T(1), T(-0.0)};
+    const auto inside = [](const glm::vec<2, T>& p) {
+        const T slack = T(8) * std::numeric_limits<T>::epsilon();
+        return p.x >= -slack && p.x <= T(1) + slack && p.y >= -slack && p.y <= T(1) + slack;
+    };
+    for (const T x : numbers) {
+        for (const T y : numbers) {
+            const warped_stretch<T> stretch = warp_stretch(
+                t.rows.view(), t.columns.view(), glm::vec<2, T>(x, y), glm::vec<2, T>(y, x));
+            CHECK(inside(stretch.from));
+            CHECK(inside(stretch.to));
+            CHECK(stretch.bend.x >= T(0));
+            CHECK(stretch.bend.y >= T(0));
+        }
+    }
+    // a NaN was converted to the least of all rows, from which the walk went on to the last
+    warp_tables<T> spoilt = straight_tables<T>(8);
+    for (const T bad : {nan, huge, -huge}) {
+        for (T& node : spoilt.rows.nodes) {
+            node = bad;
+        }
+        const T deviation = edge_deviation(spoilt.rows.view(), spoilt.columns.view(),
+                                           glm::vec<2, T>(T(0.1)), glm::vec<2, T>(T(0.9)), T(9));
+        CHECK_FALSE(deviation < T(0));
     }
 }
