@@ -54,6 +54,13 @@ struct moving_resources {
     shadow_memory shadows;
 };
 
+/// What a method draws again and again for a camera that stands still.
+struct standing_view {
+    map_resources maps;
+    shadow_memory shadows;
+    light_maps chosen;
+};
+
 int used_maps(const light_maps& chosen) {
     return static_cast<int>(std::count_if(chosen.maps.begin(), chosen.maps.end(),
                                           [](const light_map& each) { return each.used; }));
@@ -189,6 +196,51 @@ struct renderer::state {
         }
     }
 
+    /// One frame of a view that stands still.
+    void draw(const method& how, const view_request& request, standing_view& view, bool count) {
+        light_memory fresh;
+        view.chosen = frame(how, request, fresh, view.maps, view.shadows, count);
+        remember(how, request, view.shadows);
+    }
+
+    /// Makes what a view needs. The first frame warms up and, with tables, finds how long the lists
+    /// must be.
+    standing_view prepare(const method& how, const view_request& request) {
+        light_memory memory;
+        light_maps chosen = choose_maps(how, request, memory);
+        const std::size_t count = chosen.maps.size() * static_cast<std::size_t>(how.partitions);
+        standing_view view{resources(how, request, count), {}, std::move(chosen)};
+        fit_us.clear();
+        culling_us.clear();
+        bool grown = false;
+        do {
+            view.shadows = told(how, request);
+            forget_counts();
+            draw(how, request, view, true);
+            grown = grow_lists(how);
+            if (!grown && how.tables.shadows == known_shadows::last_frame) {
+                // the shadows of a first frame make another warp, which may need more
+                forget_counts();
+                draw(how, request, view, true);
+                grown = grow_lists(how);
+            }
+        } while (grown);
+        glFinish();
+        return view;
+    }
+
+    /// Times of as many frames as asked for.
+    std::vector<double> time_frames(const method& how, const view_request& request,
+                                    standing_view& view) {
+        std::vector<double> times;
+        for (int i = 0; i < request.repeat; ++i) {
+            gpu.watch().start();
+            draw(how, request, view, false);
+            times.push_back(gpu.watch().stop());
+        }
+        return times;
+    }
+
     /// Shadow test of the samples in use.
     void test(const method& how, const light_view& light, map_resources& maps,
               const light_maps& chosen) {
@@ -312,6 +364,17 @@ struct renderer::state {
     std::map<std::string, moving_resources, std::less<>> moving;
 };
 
+void add_times(method_result& result, std::span<const double> frame_ms) {
+    result.frame_ms.insert(result.frame_ms.end(), frame_ms.begin(), frame_ms.end());
+    if (result.frame_ms.empty()) {
+        return;
+    }
+    const auto [least, most] = std::minmax_element(result.frame_ms.begin(), result.frame_ms.end());
+    result.frame_ms_min = *least;
+    result.frame_ms_max = *most;
+    result.frame_ms_median = median(result.frame_ms);
+}
+
 renderer::renderer(const scene& world, glm::ivec2 view)
     : state_(std::make_unique<state>(world, view)) {}
 
@@ -357,45 +420,14 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     }
     result.cpu_setup_us.emplace_back("light matrix", median(set_up_us));
 
-    light_memory memory;
-    light_maps chosen = s.choose_maps(how, request, memory);
-    const std::size_t map_count = chosen.maps.size() * static_cast<std::size_t>(how.partitions);
-    map_resources maps = resources(how, request, map_count);
-    shadow_memory shadows = s.told(how, request);
-    const auto frame = [&](bool count) {
-        light_memory fresh;
-        chosen = s.frame(how, request, fresh, maps, shadows, count);
-        s.remember(how, request, shadows);
-    };
-
-    s.fit_us.clear();
-    s.culling_us.clear();
-    // the first frame warms up and, with tables, finds how long the lists must be
-    bool grown = false;
-    do {
-        shadows = s.told(how, request);
-        s.forget_counts();
-        frame(true);
-        grown = s.grow_lists(how);
-        if (!grown && how.tables.shadows == known_shadows::last_frame) {
-            // the shadows of a first frame make another warp, which may need more
-            s.forget_counts();
-            frame(true);
-            grown = s.grow_lists(how);
-        }
-    } while (grown);
-    glFinish();
-
-    std::vector<double> frames;
-    for (int i = 0; i < request.repeat; ++i) {
-        s.gpu.watch().start();
-        frame(false);
-        frames.push_back(s.gpu.watch().stop());
-    }
+    standing_view view = s.prepare(how, request);
+    map_resources& maps = view.maps;
+    light_maps& chosen = view.chosen;
+    add_times(result, s.time_frames(how, request, view));
     std::map<std::string, std::vector<double>> times;
     s.gpu.time_into(&times);
     for (int i = 0; i < std::min(request.repeat, 3); ++i) {
-        frame(false);
+        s.draw(how, request, view, false);
         s.gpu.begin_frame();
     }
     s.gpu.time_into(nullptr);
@@ -404,10 +436,6 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     }
     gl::check("shadow methods");
 
-    result.frame_ms_median = median(frames);
-    result.frame_ms_min = frames.empty() ? 0.0 : *std::min_element(frames.begin(), frames.end());
-    result.frame_ms_max = frames.empty() ? 0.0 : *std::max_element(frames.begin(), frames.end());
-    result.frames = static_cast<int>(frames.size());
     for (const std::string& pass : s.gpu.timed()) {
         result.passes.push_back({pass, median(times[pass])});
     }
@@ -461,6 +489,12 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         result.pictures.push_back(heat_map(extents, s.gpu.view()));
     }
     return result;
+}
+
+std::vector<double> renderer::more_frames(std::string_view name, const view_request& request) {
+    const method& how = find_method(name);
+    standing_view view = state_->prepare(how, request);
+    return state_->time_frames(how, request, view);
 }
 
 moving_frame renderer::next_frame(std::string_view name, const view_request& request,

@@ -70,10 +70,10 @@ struct texel_metric {
 /// What a method did.
 struct method_result {
     std::vector<std::uint8_t> shadowed; ///< per view sample: 1 = in shadow
+    std::vector<double> frame_ms;       ///< of every frame that was timed, see `add_times`
     double frame_ms_median;
     double frame_ms_min;
     double frame_ms_max;
-    int frames; ///< how many the three times above are over
     std::vector<pass_time> passes;
     std::vector<std::pair<std::string, double>> cpu_setup_us;
     std::size_t bytes;     ///< of GPU memory that the method needs beyond mesh and G-buffer
@@ -88,6 +88,9 @@ struct method_result {
     std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for
     std::vector<float> light;        ///< share per view sample, where a filter was asked for
 };
+
+/// Adds times of frames, and brings their median and ends up to date.
+void add_times(method_result& result, std::span<const double> frame_ms);
 
 /// One frame of a moving camera.
 struct moving_frame {
@@ -117,6 +120,10 @@ class renderer {
 
     /// Runs a method other than "raytraced", which needs no GPU.
     method_result run(std::string_view method, const view_request& request);
+
+    /// Times of as many frames more as the request repeats, and nothing else: `run` in rounds lets
+    /// what drifts on a machine hit all methods alike.
+    std::vector<double> more_frames(std::string_view method, const view_request& request);
 
     /// The next frame of a camera that moves; `repeat` does not count. The samples of the frame
     /// before are those of the last `remember_view`.

@@ -1,6 +1,7 @@
 #include "lab/options.hpp"
 
 #include "lab/figures.hpp"
+#include "lab/sweep.hpp"
 #include "lab/warp_arguments.hpp"
 
 #include <CLI/CLI.hpp>
@@ -174,6 +175,7 @@ raster_choice raster_of(const options& wanted) {
 std::optional<options> parse_options(int argc, const char* const* argv,
                                      std::span<const std::string_view> methods) {
     options result;
+    std::string sweep;
     CLI::App app("Renders scenes with shadow-mapping methods, counts the pixels that each gets "
                  "wrong against ray tracing, and writes a report.",
                  "warpshadow-lab");
@@ -217,6 +219,12 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     add_warp_arguments(app, tables);
     app.add_option("--preset", result.preset,
                    "Redo a figure of a paper: figure6, figure8, vpl or vpl:POINTS");
+    app.add_option("--sweep", sweep,
+                   "All methods at all sizes on all built-in scenes, what accuracy costs in time: "
+                   "short or full (hours); what is given besides takes the place of its part, and "
+                   "a sweep that was stopped goes on where it was")
+        ->expected(0, 1)
+        ->default_str("short");
     app.add_option("--path", result.path,
                    "Move the camera and follow every frame: yaw, forward, strafe, orbit, walk or a "
                    "file");
@@ -234,6 +242,20 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         throw bad_input(text + " (see --help)");
     }
 
+    if (app.count("--sweep") > 0) {
+        if (!(result.preset.empty() && result.path.empty() && biases.empty() && filter.empty())) {
+            throw bad_input("--sweep knows no --preset, --path, --bias and --filter");
+        }
+        const std::string out = result.out;
+        result = options_of_sweep(sweep.empty() ? "short" : sweep);
+        result.out = out;
+        if (!(scenes.empty() && lights.empty())) {
+            result.point_lights.clear();
+        }
+        if (!(wanted.empty() && maps.empty())) {
+            result.variants.clear();
+        }
+    }
     result.tables = warp_wishes_of(tables);
 
     const auto replace_if_given = [](std::vector<std::string>& target,
@@ -353,6 +375,9 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         }
         result.seed = *value;
     }
+    if (!result.sweep.empty()) {
+        result.pictured = pictured_size(result);
+    }
     if (result.out.empty()) {
         throw bad_input("--out wants a folder");
     }
@@ -420,6 +445,11 @@ light_view resolve_light(const std::string& text, const scene& world) {
     throw bad_input("--light wants a number, sun:dx,dy,dz, spot:x,y,z,tx,ty,tz,angle or "
                     "point:x,y,z, not '" +
                     text + "'");
+}
+
+std::string kind_text(warpshadow::light_kind kind) {
+    using warpshadow::light_kind;
+    return kind == light_kind::directional ? "sun" : kind == light_kind::point ? "point" : "spot";
 }
 
 std::string camera_text(const camera_view& camera) {

@@ -16,6 +16,21 @@
 
 namespace lab {
 
+/// One method with tables of another kind than all others.
+struct table_variant {
+    std::string method;
+    std::string name; ///< of the variant
+    int map;
+    warp_wishes tables;
+    std::optional<raster_choice> raster;
+};
+
+/// A light of one scene alone.
+struct light_of_scene {
+    std::string scene;
+    std::string light;
+};
+
 /// What the user asked for; cameras and lights are resolved per scene.
 struct options {
     std::vector<std::string> scenes{"outdoor", "interior"};
@@ -26,11 +41,16 @@ struct options {
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
-    std::vector<bias_choice> biases;    ///< to be compared; none: the exact test, not measured
-    filter_choice filter;               ///< of the shadows in pictures
-    std::vector<raster_choice> rasters; ///< of maps with tables, to be compared; none: the default
-    warp_wishes tables;                 ///< for methods with warp tables
-    std::string preset;                 ///< a figure to redo, see lab/figures.hpp, or none
+    std::vector<bias_choice> biases;     ///< to be compared; none: the exact test, not measured
+    filter_choice filter;                ///< of the shadows in pictures
+    std::vector<raster_choice> rasters;  ///< of maps with tables, to be compared; none: the default
+    warp_wishes tables;                  ///< for methods with warp tables
+    std::string sweep;                   ///< "short" or "full", see lab/sweep.hpp, or none
+    int rounds = 1;                      ///< in which frames are timed, all methods in each
+    std::vector<table_variant> variants; ///< to be run besides the methods
+    std::vector<light_of_scene> point_lights; ///< besides the lights
+    int pictured = 0;                         ///< size of the maps whose pictures are kept; 0: all
+    std::string preset;                       ///< a figure to redo, see lab/figures.hpp, or none
     std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
     int frames = 60;  ///< along the path
     unsigned seed = 1;
@@ -51,6 +71,9 @@ camera_view resolve_camera(const std::string& text, const scene& world);
 
 /// The light that `text` names in `world`: a number, or sun:…, spot:…, point:….
 light_view resolve_light(const std::string& text, const scene& world);
+
+/// "sun", "spot" or "point".
+std::string kind_text(warpshadow::light_kind kind);
 
 /// The lab's syntax for a camera and a light, as --list-scenes shows them.
 std::string camera_text(const camera_view& camera);

@@ -195,7 +195,8 @@ std::string short_number(double value) {
 }
 
 std::string scatter_plot(const std::vector<plot_series>& series, const std::string& x_name,
-                         const std::string& y_name) {
+                         const std::string& y_name,
+                         const std::vector<std::pair<double, double>>& front) {
     std::vector<double> xs;
     std::vector<double> ys;
     for (const plot_series& each : series) {
@@ -229,6 +230,20 @@ std::string scatter_plot(const std::vector<plot_series>& series, const std::stri
     svg.text(58.0, bottom - 4.0, "0", "text-anchor=\"end\"");
     svg.text(0.5 * (64.0 + width - 92.0), height - 10.0, x_name, "text-anchor=\"middle\"");
     svg.upwards(16.0, 0.5 * bottom + 9.0, y_name);
+
+    std::string steps;
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const auto corner = [&](double at, double value) {
+            steps += (steps.empty() ? "" : " ") + fixed(x.at(at), 1) + "," + fixed(y_of(value), 1);
+        };
+        if (i > 0) {
+            corner(front[i].first, front[i - 1].second);
+        }
+        corner(front[i].first, front[i].second);
+    }
+    if (front.size() > 1) {
+        svg.polyline(steps, "front");
+    }
 
     for (const plot_series& each : series) {
         const std::string colour = colour_class(each.colour);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lab {
@@ -39,8 +40,10 @@ struct plot_series {
 };
 
 /// Both axes logarithmic; the empty text for no points.
+/// @param front points that no other beats, by x: drawn as the border of what can be had
 std::string scatter_plot(const std::vector<plot_series>& series, const std::string& x_name,
-                         const std::string& y_name);
+                         const std::string& y_name,
+                         const std::vector<std::pair<double, double>>& front = {});
 
 /// One value per frame; frames without a value leave a gap.
 struct frame_series {

@@ -1,5 +1,7 @@
 #include "lab/report.hpp"
 
+#include "lab/accuracy.hpp"
+#include "lab/accuracy_report.hpp"
 #include "lab/plot.hpp"
 
 #include <algorithm>
@@ -29,8 +31,8 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
     return out;
 }
 
-std::string image(const png_file& source, const std::string& what, const char* kind = "") {
-    return "<img" + std::string(kind) + " alt=\"" + escaped(what) + "\" width=\"" +
+std::string image(const png_file& source, const std::string& what, const std::string& more = "") {
+    return "<img" + more + " alt=\"" + escaped(what) + "\" width=\"" +
            std::to_string(source.width) + "\" height=\"" + std::to_string(source.height) +
            "\" loading=\"lazy\" src=\"data:image/png;base64," + base64(source.bytes) + "\">";
 }
@@ -62,38 +64,83 @@ std::size_t rank_of(const results& all, const std::string& method) {
     return static_cast<std::size_t>(std::find(seen.begin(), seen.end(), method) - seen.begin());
 }
 
-/// Error against frame time; a line joins the map sizes of one method.
-std::string plot_of(const results& all, const view_pictures& view) {
+/// Error against a cost; a line joins the map sizes of one method, another what nothing beats.
+std::string plot_of(const results& all, const std::vector<std::size_t>& runs, cost of) {
     std::map<std::size_t, plot_series> series;
-    std::vector<std::size_t> by_size;
-    for (const run_pictures& each : view.runs) {
-        by_size.push_back(each.run);
-    }
+    std::vector<std::size_t> by_size = runs;
     std::stable_sort(by_size.begin(), by_size.end(), [&](std::size_t a, std::size_t b) {
         return all.runs[a].map < all.runs[b].map;
     });
+    constexpr double mebibyte = 1024.0 * 1024.0;
+    const auto x_of = [&](double value) { return of == cost::time ? value : value / mebibyte; };
     for (const std::size_t index : by_size) {
         const run_record& run = all.runs[index];
-        const std::optional<double> ratio =
-            run.against_truth.ratio(run.against_truth.false_shadow + run.against_truth.false_light);
-        if (!ratio || !(run.result.frame_ms_min > 0.0)) {
+        const std::optional<double> ratio = wrong_of(run);
+        if (!ratio || !(cost_of(run, of) > 0.0)) {
             continue;
         }
         plot_series& of_method = series[rank_of(all, label_of(run))];
         of_method.name = label_of(run);
         const std::string size = run.map > 0 ? std::to_string(run.map) + "²" : "";
-        of_method.points.push_back({run.result.frame_ms_median, run.result.frame_ms_min,
-                                    run.result.frame_ms_max, 100.0 * *ratio, size,
+        const double x = x_of(cost_of(run, of));
+        const bool timed = of == cost::time;
+        of_method.points.push_back({x, timed ? run.result.frame_ms_min : x,
+                                    timed ? run.result.frame_ms_max : x, 100.0 * *ratio, size,
                                     label_of(run) + (run.map > 0 ? " at " + size : "") + ": " +
                                         short_number(100.0 * *ratio) + " %, " +
-                                        ms_text(run.result.frame_ms_median) + " ms"});
+                                        ms_text(run.result.frame_ms_median) + " ms, " +
+                                        bytes_text(run.result.bytes)});
     }
     std::vector<plot_series> all_series;
     for (auto& [rank, each] : series) {
         each.colour = rank;
         all_series.push_back(std::move(each));
     }
-    return scatter_plot(all_series, "frame time, ms", "wrong pixels, %");
+    std::vector<std::pair<double, double>> front;
+    for (const std::size_t index : pareto_front(all.runs, runs, of)) {
+        front.emplace_back(x_of(cost_of(all.runs[index], of)), 100.0 * *wrong_of(all.runs[index]));
+    }
+    return scatter_plot(all_series, of == cost::time ? "frame time, ms" : "memory, MiB",
+                        "wrong pixels, %", front);
+}
+
+/// The plots of one view; of a sweep against memory too.
+std::string plots_of(const results& all, const view_pictures& view) {
+    std::vector<std::size_t> runs;
+    for (std::size_t i = 0; i < all.runs.size(); ++i) {
+        const run_record& run = all.runs[i];
+        if (run.scene == view.scene && run.camera == view.camera && run.light == view.light) {
+            runs.push_back(i);
+        }
+    }
+    const std::string time = plot_of(all, runs, cost::time);
+    return all.matched == 0
+               ? time
+               : "<div class=\"plots\">\n" + time + plot_of(all, runs, cost::bytes) + "</div>\n";
+}
+
+/// Two pictures of a view over each other, with a slider between them.
+std::string comparison_of(const results& all, const view_pictures& view) {
+    std::string choices = "<option value=\"\">ray traced</option>";
+    std::string chosen;
+    for (const run_pictures& each : view.runs) {
+        const run_record& run = all.runs[each.run];
+        if (run.map == 0) {
+            continue;
+        }
+        const std::string id = "p" + std::to_string(each.run);
+        chosen = chosen.empty() ? id : chosen;
+        choices += "<option value=\"" + id + "\">" + escaped(label_of(run)) + " " +
+                   std::to_string(run.map) + "²</option>";
+    }
+    if (chosen.empty()) {
+        return "";
+    }
+    return "<div class=\"compare\"><p><select aria-label=\"left\">" + choices +
+           "</select> against <select aria-label=\"right\">" + choices +
+           "</select></p><div class=\"over\"><img alt=\"left\"><img alt=\"right\"></div>"
+           "<input type=\"range\" aria-label=\"border between the pictures\" min=\"0\" "
+           "max=\"100\" value=\"50\"></div>\n";
 }
 
 std::string cell(const std::string& text, bool number = true) {
@@ -190,10 +237,12 @@ std::string texel_line(const method_result& result) {
 std::string view_section(const results& all, const view_pictures& view) {
     std::string html = "<section>\n<h2>" + escaped(view.scene) + "</h2>\n<p>camera " +
                        escaped(view.camera_text) + "<br>light " + escaped(view.light_text) +
-                       "</p>\n" + plot_of(all, view) + "<div class=\"cards\">\n";
+                       "</p>\n" + plots_of(all, view) + comparison_of(all, view) +
+                       "<div class=\"cards\">\n";
     html += "<article><h3>ray traced</h3>\n<p>the reference</p>\n" +
-            image(view.reference, view.scene + ", ray traced") + "<div class=\"pair\">" +
-            image(view.reference_detail, "detail", " class=\"pixel\"") + "</div></article>\n";
+            image(view.reference, view.scene + ", ray traced", " class=\"truth\"") +
+            "<div class=\"pair\">" + image(view.reference_detail, "detail", " class=\"pixel\"") +
+            "</div></article>\n";
     for (const run_pictures& each : view.runs) {
         const run_record& run = all.runs[each.run];
         if (run.map == 0) {
@@ -212,7 +261,8 @@ std::string view_section(const results& all, const view_pictures& view) {
                             texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels</p>\n"
                       : "") +
             texel_line(run.result) +
-            image(each.marked, view.scene + ", " + method_text(run) + ", wrong pixels in red") +
+            image(each.marked, view.scene + ", " + method_text(run) + ", wrong pixels in red",
+                  " id=\"p" + std::to_string(each.run) + "\"") +
             "<div class=\"pair\">" + image(each.detail, "detail", " class=\"pixel\"") +
             image(each.detail_marked, "detail, wrong pixels in red", " class=\"pixel\"") +
             "</div>\n" + pass_list(run.result);
@@ -320,7 +370,29 @@ figure { margin: 0; } figcaption { font-size: .8rem; } summary { cursor: pointer
 .plots { display: grid; gap: .4rem 1.2rem;
   grid-template-columns: repeat(auto-fill, minmax(min(100%, 480px), 1fr)); }
 .plot .open { fill: none; }
+.front { fill: none; stroke: var(--ink); stroke-width: 5; stroke-opacity: .18; stroke-linejoin: round; }
+.answer td { white-space: normal; } .answer small { color: var(--soft); }
+.over { position: relative; max-width: 1024px; } .over img { margin: 0; }
+.over img + img { position: absolute; inset: 0; clip-path: inset(0 0 0 50%); }
+.compare input { width: 100%; max-width: 1024px; }
 .dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin-right: .45em; }
+)";
+
+/// The slider between two pictures, which are those that the page shows anyway.
+constexpr const char* script = R"(
+for (const box of document.querySelectorAll(".compare")) {
+  const [left, right] = box.querySelectorAll("select"), [under, over] = box.querySelectorAll("img");
+  const truth = box.parentElement.querySelector(".truth"), slider = box.querySelector("input");
+  const source = choice => (choice.value ? document.getElementById(choice.value) : truth).src;
+  const show = () => {
+    under.src = source(left);
+    over.src = source(right);
+    over.style.clipPath = `inset(0 0 0 ${slider.value}%)`;
+  };
+  right.selectedIndex = Math.min(1, right.options.length - 1);
+  for (const each of [left, right, slider]) each.addEventListener("input", show);
+  show();
+}
 )";
 
 std::string colour_rules() {
@@ -360,7 +432,10 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
         "light. Counted are pixels that face the light (n·l &gt; 0.1); those at grazing light "
         "(0 &lt; n·l ≤ 0.1) have a column of their own. Wrong pixels are red in the "
         "pictures.</p>\n" +
-        (all.runs.empty() ? std::string() : table(all));
+        (all.runs.empty()   ? std::string()
+         : all.matched == 0 ? table(all)
+                            : accuracy_section(all) + "<details><summary>All runs</summary>\n" +
+                                  table(all) + "</details>\n");
     if (!paths.empty()) {
         html +=
             "<p>A pixel flips when the maps of one frame and those of the next disagree about the "
@@ -379,7 +454,7 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
     for (const std::string& figure : figures) {
         html += figure;
     }
-    return html + "</main></body>\n</html>\n";
+    return html + "</main>\n<script>" + script + "</script>\n</body>\n</html>\n";
 }
 
 } // namespace lab

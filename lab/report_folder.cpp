@@ -5,11 +5,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 
 namespace lab {
 namespace {
@@ -47,7 +49,7 @@ void remove_empty_parents(fs::path innermost, const fs::path& outermost) {
 
 } // namespace
 
-report_folder::report_folder(const fs::path& wanted) {
+report_folder::report_folder(const fs::path& wanted, bool resumable) {
     std::error_code error;
     wanted_ = fs::absolute(wanted).lexically_normal();
     if (!wanted_.has_filename()) {
@@ -85,11 +87,14 @@ report_folder::report_folder(const fs::path& wanted) {
         give_up(error);
     }
     std::string name = ".";
-    name += wanted_.filename().string() + ".partial-";
-    name += std::to_string(static_cast<long>(::getpid()));
+    name += wanted_.filename().string();
+    name += resumable ? ".unfinished" : ".partial-" + std::to_string(static_cast<long>(::getpid()));
     temporary_ = parent / name;
-    fs::remove_all(temporary_, error);
-    if (!fs::create_directory(temporary_, error) || error) {
+    if (!resumable) {
+        fs::remove_all(temporary_, error);
+    }
+    const bool made = fs::create_directory(temporary_, error);
+    if (error || !(made || resumable)) {
         give_up(error ? error : std::make_error_code(std::errc::file_exists));
     }
     // some file systems make folders and refuse files
@@ -102,7 +107,7 @@ report_folder::report_folder(const fs::path& wanted) {
 }
 
 report_folder::~report_folder() {
-    if (!published_) {
+    if (!published_ && !kept_) {
         std::error_code ignored;
         fs::remove_all(temporary_, ignored);
         remove_empty_parents(wanted_.parent_path(), made_parent_);
@@ -121,6 +126,21 @@ void report_folder::write(std::string_view name, std::span<const std::uint8_t> b
 
 void report_folder::write(std::string_view name, const std::string& text) {
     write(name, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+std::vector<std::uint8_t> report_folder::read(std::string_view name) const {
+    std::ifstream file(temporary_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void report_folder::remove(std::string_view suffix) {
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(temporary_)) {
+        if (entry.path().filename().string().ends_with(suffix)) {
+            found.push_back(entry.path());
+        }
+    }
+    std::for_each(found.begin(), found.end(), [](const fs::path& file) { fs::remove(file); });
 }
 
 fs::path report_folder::publish() {

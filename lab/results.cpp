@@ -1,5 +1,7 @@
 #include "lab/results.hpp"
 
+#include "lab/accuracy_report.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -32,9 +34,13 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     json["scene"] = run.scene;
     json["camera"] = run.camera;
     json["light"] = run.light;
+    json["light_kind"] = run.kind;
     json["method"] = run.method;
     json["map"] = run.map;
     json["view"] = {view.x, view.y};
+    if (run.variant) {
+        json["variant"] = *run.variant;
+    }
     if (run.raster) {
         json["raster"] = *run.raster;
     }
@@ -71,7 +77,7 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     frame["median"] = r.frame_ms_median;
     frame["min"] = r.frame_ms_min;
     frame["max"] = r.frame_ms_max;
-    frame["n"] = r.frames;
+    frame["n"] = r.frame_ms.size();
     json["frame_ms"] = frame;
     json["pass_ms"] = ordered_json::object();
     for (const pass_time& pass : r.passes) {
@@ -208,6 +214,9 @@ std::string json_of(const results& all) {
     for (const vpl_record& vpl : all.vpls) {
         json["vpl"].push_back(json_of_vpl(vpl));
     }
+    if (all.matched != 0) {
+        json["accuracy"] = accuracy_json(all);
+    }
     json["not_applicable"] = ordered_json::array();
     for (const not_applicable& each : all.left_out) {
         ordered_json entry;
@@ -251,6 +260,9 @@ std::vector<std::string> left_out_lines(const results& all) {
 }
 
 std::string method_text(const run_record& run) {
+    if (run.variant) {
+        return run.method + " " + *run.variant; // a way to rasterise is part of its name
+    }
     return run.raster ? run.method + " " + *run.raster : run.method;
 }
 

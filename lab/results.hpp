@@ -25,8 +25,10 @@ struct run_record {
     method_result result;
     std::optional<std::string> bias = std::nullopt; ///< as it was asked for; none: not measured
     bias_measures bias_effect = {};
-    std::string filter = "none";                      ///< of the shadows in the pictures
-    std::optional<std::string> raster = std::nullopt; ///< as it was asked for, of maps with tables
+    std::string filter = "none";                       ///< of the shadows in the pictures
+    std::optional<std::string> raster = std::nullopt;  ///< as it was asked for, of maps with tables
+    std::optional<std::string> variant = std::nullopt; ///< of the tables, in a sweep
+    std::string kind = "sun";                          ///< of light: sun, spot or point
 };
 
 /// Runs in rows and columns.
@@ -80,6 +82,7 @@ struct results {
     std::vector<not_applicable> left_out;
     std::vector<figure_record> figures;
     std::vector<vpl_record> vpls;
+    int matched = 0; ///< in a sweep, the size at which qualities are matched; else 0
 };
 
 /// The text of results.json, schema 1.
@@ -91,7 +94,7 @@ std::string table_of(const results& all);
 /// What was left out and why, one line for all methods with the same reason.
 std::vector<std::string> left_out_lines(const results& all);
 
-/// A method with its way to rasterise, if that was asked for.
+/// A method with its way to rasterise and the variant of its tables, if they were asked for.
 std::string method_text(const run_record& run);
 
 /// A share as per cent, "-" when there is none.

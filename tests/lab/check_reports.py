@@ -7,9 +7,11 @@ import base64
 import json
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
@@ -24,7 +26,7 @@ NOT_FOR_POINTS = ["sm", "stable", "sdsm", "fitted-2", "notw", "notw-nodv", "notw
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
 RUN_KEYS = {
-    "scene", "camera", "light", "method", "map", "view", "samples", "wrong_pixel_ratio",
+    "scene", "camera", "light", "light_kind", "method", "map", "view", "samples", "wrong_pixel_ratio",
     "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
     "bytes", "triangles", "maps", "angle_degrees", "status",
 }
@@ -370,6 +372,44 @@ def figure_report(folder, *arguments):
     return results
 
 
+def check_sweep():
+    """A sweep that is stopped goes on where it was; errors fall as maps grow."""
+    arguments = ["--sweep", "--scene", "leaves", "--camera", "0", "--camera", "1", "--view",
+                 "96x64", "--map", "32,128,512", "--methods",
+                 "sm,pssm,sdsm,dv,lispsm,fitted,notw,rtw-backward,sv,raytraced", "--out", "sweep"]
+    stopped = subprocess.Popen([lab, *arguments], cwd=scratch, stderr=subprocess.PIPE, text=True)
+    unfinished = scratch / ".sweep.unfinished"
+    while stopped.poll() is None and not list(unfinished.glob("*.cbor")):
+        time.sleep(0.01)
+    stopped.send_signal(signal.SIGINT)
+    assert "interrupted" in stopped.communicate()[1] and stopped.returncode == 1
+    (kept,) = unfinished.glob("*.cbor")
+    first = kept.read_bytes()
+    # what stands there of other settings is measured again, not taken
+    assert not (scratch / "sweep").exists()
+    done = run(*arguments)
+    assert done.returncode == 0, done.stderr
+    assert not unfinished.exists() and not list((scratch / "sweep").glob("*.cbor"))
+    results = json.loads((scratch / "sweep" / "results.json").read_text())
+    runs = results["runs"]
+    assert [r["frame_ms"]["n"] for r in runs] == [3] * len(runs)
+    taken = [t for r in runs if r["camera"] == "0" for t in (r["frame_ms"]["median"],)]
+    assert all(struct.pack(">d", t) in first for t in taken), "times of the first attempt"
+    for method in dict.fromkeys(r["method"] for r in runs if r["map"]):
+        of_size = {m: sum(r["wrong_pixel_ratio"] for r in runs if r["method"] == method
+                          and r["map"] == m) for m in (32, 128, 512)}
+        assert of_size[32] > of_size[128] > of_size[512], (method, of_size)
+    accuracy = results["accuracy"]
+    assert accuracy["map"] == 512 and accuracy["scores"] and accuracy["equal_quality"]
+    best = [b for b in accuracy["budgets"] if b["scene"] == "leaves"]
+    errors = [b["wrong_pixel_ratio"] for b in best]
+    assert errors == sorted(errors, reverse=True), "more time is never worse"
+    html = (scratch / "sweep" / "report.html").read_text()
+    assert "Which method to take" in html and html.count("<svg") == 2 * html.count("<section>") == 4
+    assert html.count('class="compare"') == 2
+    shutil.rmtree(scratch / "sweep")
+
+
 def check_files_as_scenes():
     # seen from where the light is, the raised square hides its own shadow
     both = report("gltf", "--scene", str(data / "two_quads.gltf"), "--camera",
@@ -413,7 +453,7 @@ def check_help():
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
                    "--view", "--repeat", "--bias", "--importance", "--tables", "--window", "--floor",
-                   "--order", "--power", "--subset", "--cells", "--collapse", "--sigma", "--filter", "--preset", "--path", "--frames", "--seed", "--out", "Examples:"):
+                   "--order", "--power", "--subset", "--cells", "--collapse", "--sigma", "--filter", "--preset", "--sweep", "--path", "--frames", "--seed", "--out", "Examples:"):
         assert option in done.stdout, option
     listed = run("--list-scenes")
     assert listed.returncode == 0 and listed.stderr == ""
@@ -435,6 +475,7 @@ check_virtual_lights()
 check_finer_scene()
 check_biases()
 check_figures()
+check_sweep()
 check_files_as_scenes()
 check_views()
 shutil.rmtree(scratch)

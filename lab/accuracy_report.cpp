@@ -1,0 +1,194 @@
+#include "lab/accuracy_report.hpp"
+
+#include "lab/accuracy.hpp"
+#include "lab/plot.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lab {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array budgets{1.0, 1.25, 1.5, 2.0, 4.0, std::numeric_limits<double>::infinity()};
+
+/// Methods whose quality others are asked to match.
+const std::vector<std::string>& targets() {
+    static const std::vector<std::string> names{"fitted", "notw", "cube-notw"};
+    return names;
+}
+
+std::string budget_text(double budget) {
+    return std::isinf(budget) ? "any time" : "≤&nbsp;" + short_number(budget) + "×";
+}
+
+std::string head(std::initializer_list<const char*> names, std::size_t texts) {
+    std::string html = "<div class=\"scroll\"><table>\n<thead><tr>";
+    std::size_t i = 0;
+    for (const char* const name : names) {
+        html += i++ < texts ? "<th>" : "<th class=\"n\">";
+        html += name;
+        html += "</th>";
+    }
+    return html + "</tr></thead>\n<tbody>\n";
+}
+
+std::string text_cell(const std::string& text) {
+    return "<td>" + escaped(text) + "</td>";
+}
+
+std::string number_cell(const std::string& text) {
+    return "<td class=\"n\">" + escaped(text) + "</td>";
+}
+
+std::string times(double ratio) {
+    return short_number(ratio) + "×";
+}
+
+std::string plural(const std::string& kind) {
+    return kind == "point" ? "point lights" : kind + "s";
+}
+
+std::string answer(const results& all) {
+    const std::vector<budget_choice> choices = choose_for_budgets(all.runs, all.matched, budgets);
+    std::string html = "<h2>Which method to take</h2>\n<p>Fewest wrong pixels for a frame time, "
+                       "that of <b>sm</b>, or "
+                       "<b>cube6</b> for point lights, at " +
+                       std::to_string(all.matched) +
+                       "² being 1: from the G-buffer to the shadow test, over all cameras and "
+                       "lights of a kind (geometric mean).</p>\n<div class=\"scroll\"><table "
+                       "class=\"answer\">\n<thead><tr><th>scene</th><th>lights</th>";
+    for (const double budget : budgets) {
+        html += "<th>" + budget_text(budget) + "</th>";
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (std::size_t i = 0; i < choices.size();) {
+        const budget_choice& first = choices[i];
+        html += "<tr>" + text_cell(first.scene) + text_cell(plural(first.kind));
+        for (const double budget : budgets) {
+            const bool present = i < choices.size() && choices[i].scene == first.scene &&
+                                 choices[i].kind == first.kind && choices[i].budget == budget;
+            if (!present) {
+                html += "<td>–</td>";
+                continue;
+            }
+            const budget_choice& each = choices[i++];
+            html += "<td><b>" + escaped(each.method) + "</b> " + std::to_string(each.map) +
+                    "²<br><small>" + percent_text(each.wrong) + "&nbsp;%, " + times(each.time) +
+                    "</small></td>";
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+std::string score_table(const results& all) {
+    std::vector<method_score> scores = score_methods(all.runs);
+    std::stable_sort(scores.begin(), scores.end(), [](const auto& a, const auto& b) {
+        return a.kind != b.kind ? a.kind < b.kind
+               : a.map != b.map ? a.map < b.map
+                                : a.wrong < b.wrong;
+    });
+    std::string html = "<h2>All scenes together</h2>\n<p>Ratios to sm, or cube6 for point "
+                       "lights, at the same size, geometric means over the views; better and worse "
+                       "count views.</p>\n" +
+                       head({"lights", "method", "map", "views", "wrong", "frame time", "bytes",
+                             "better", "worse"},
+                            2);
+    for (const method_score& each : scores) {
+        html += "<tr>" + text_cell(plural(each.kind)) + text_cell(each.method) +
+                number_cell(std::to_string(each.map)) + number_cell(std::to_string(each.views)) +
+                number_cell(times(each.wrong)) + number_cell(times(each.time)) +
+                number_cell(times(each.bytes)) + number_cell(std::to_string(each.better)) +
+                number_cell(std::to_string(each.worse)) + "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+std::string quality_table(const results& all) {
+    std::string html =
+        "<h2>What it takes to be as good</h2>\n<p>For each view, the cheapest measured size at "
+        "which a method has no more wrong pixels than the first, and what its frame and its "
+        "memory cost, to those of the first.</p>\n" +
+        head({"view", "as good as", "method", "map", "wrong&nbsp;%", "frame time", "bytes"}, 3);
+    for (const equal_quality& each : match_quality(all.runs, targets(), all.matched)) {
+        const run_record& target = all.runs[each.target];
+        html += "<tr>" + text_cell(target.scene + ", " + target.camera + ", " + target.light) +
+                "<td>" + escaped(target.method) + " " + std::to_string(target.map) +
+                "²: " + percent_text(wrong_of(target)) + "&nbsp;%</td>" + text_cell(each.method);
+        if (!each.run) {
+            html += number_cell("none") + number_cell("") + number_cell("") + number_cell("");
+        } else {
+            const run_record& run = all.runs[*each.run];
+            html += number_cell(std::to_string(run.map)) +
+                    number_cell(percent_text(wrong_of(run))) +
+                    number_cell(times(cost_of(run, cost::time) / cost_of(target, cost::time))) +
+                    number_cell(times(cost_of(run, cost::bytes) / cost_of(target, cost::bytes)));
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+} // namespace
+
+std::string accuracy_section(const results& all) {
+    return "<div class=\"accuracy\">\n" + answer(all) + score_table(all) +
+           "<details><summary>Equal quality, view by view</summary>\n" + quality_table(all) +
+           "</details>\n</div>\n";
+}
+
+ordered_json accuracy_json(const results& all) {
+    ordered_json json;
+    json["reference"] = {{"sun", reference_for("sun")},
+                         {"spot", reference_for("spot")},
+                         {"point", reference_for("point")}};
+    json["map"] = all.matched;
+    json["budgets"] = ordered_json::array();
+    for (const budget_choice& each : choose_for_budgets(all.runs, all.matched, budgets)) {
+        json["budgets"].push_back({{"scene", each.scene},
+                                   {"light_kind", each.kind},
+                                   {"budget", std::isinf(each.budget) ? ordered_json(nullptr)
+                                                                      : ordered_json(each.budget)},
+                                   {"method", each.method},
+                                   {"map", each.map},
+                                   {"wrong_pixel_ratio", each.wrong},
+                                   {"frame_time", each.time}});
+    }
+    json["scores"] = ordered_json::array();
+    for (const method_score& each : score_methods(all.runs)) {
+        json["scores"].push_back({{"light_kind", each.kind},
+                                  {"method", each.method},
+                                  {"map", each.map},
+                                  {"views", each.views},
+                                  {"wrong", each.wrong},
+                                  {"frame_time", each.time},
+                                  {"bytes", each.bytes},
+                                  {"better", each.better},
+                                  {"worse", each.worse}});
+    }
+    json["equal_quality"] = ordered_json::array();
+    for (const equal_quality& each : match_quality(all.runs, targets(), all.matched)) {
+        const run_record& target = all.runs[each.target];
+        ordered_json entry = {{"scene", target.scene}, {"camera", target.camera},
+                              {"light", target.light}, {"target", target.method},
+                              {"method", each.method}, {"map", nullptr},
+                              {"frame_time", nullptr}, {"bytes", nullptr}};
+        if (each.run) {
+            const run_record& run = all.runs[*each.run];
+            entry["map"] = run.map;
+            entry["frame_time"] = cost_of(run, cost::time) / cost_of(target, cost::time);
+            entry["bytes"] = cost_of(run, cost::bytes) / cost_of(target, cost::bytes);
+        }
+        json["equal_quality"].push_back(entry);
+    }
+    return json;
+}
+
+} // namespace lab

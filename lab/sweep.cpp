@@ -1,0 +1,126 @@
+#include "lab/sweep.hpp"
+
+#include "lab/view_archive.hpp"
+#include "lab/view_runner.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace lab {
+namespace {
+
+/// What is varied one by one, with everything else as it is by default.
+std::vector<table_variant> variants_at(int map) {
+    std::vector<table_variant> result;
+    const auto tables = [&](const char* name, auto set) {
+        table_variant variant{"notw", name, map, {}, {}};
+        set(variant.tables);
+        result.push_back(variant);
+    };
+    const auto raster = [&](const char* text) {
+        result.push_back({"notw", std::string("raster ") + text, map, {}, parse_raster(text)});
+    };
+    raster("none");
+    raster("fragment");
+    raster("rule:2.5");
+    raster("bound:1");
+    raster("bound:0.25");
+    tables("tables 32", [](warp_wishes& wish) { wish.tables = 32; });
+    tables("tables 512", [](warp_wishes& wish) { wish.tables = 512; });
+    tables("window 0.25", [](warp_wishes& wish) { wish.window = 0.25f; });
+    tables("window 2", [](warp_wishes& wish) { wish.window = 2.0f; });
+    tables("floor 0.05", [](warp_wishes& wish) { wish.floor = 0.05f; });
+    tables("every 16th sample", [](warp_wishes& wish) { wish.every = 4; });
+    return result;
+}
+
+/// What decides the records of a view; times aside, equal texts mean equal records.
+std::string settings_of(const options& wanted, const camera_view& camera, const light_view& light,
+                        const results& all) {
+    std::string text = all.renderer + "|" + all.version + "|" + wanted.sweep + "|" +
+                       std::to_string(wanted.view.x) + "x" + std::to_string(wanted.view.y) + "|" +
+                       std::to_string(wanted.repeat) + "|" + std::to_string(wanted.rounds) + "|" +
+                       std::to_string(wanted.seed) + "|" + camera_text(camera) + "|" +
+                       light_text(light);
+    for (const std::string& method : wanted.methods) {
+        text += "|" + method;
+    }
+    for (const int map : wanted.maps) {
+        text += "|" + std::to_string(map);
+    }
+    for (const table_variant& variant : wanted.variants) {
+        text += "|" + variant.name;
+    }
+    return text;
+}
+
+} // namespace
+
+options options_of_sweep(const std::string& name) {
+    if (name != "short" && name != "full") {
+        throw bad_input("--sweep wants short or full, not '" + name + "'");
+    }
+    const bool full = name == "full";
+    options result;
+    result.sweep = name;
+    result.scenes = {"outdoor", "colonnade", "interior", "leaves"};
+    result.methods = {"sm",          "stable", "pssm",      "sdsm",         "min-sm", "dv",
+                      "lispsm",      "fitted", "fitted-2",  "rtw-backward", "notw",   "notw-edges",
+                      "fitted-notw", "cube6",  "cube6-efc", "cube-notw",    "dpsm",   "dpsm-pc",
+                      "dpsm-notw",   "sv",     "raytraced"};
+    result.point_lights = {{"outdoor", "point:0,8,-8"}, {"interior", "point:0.2,1.97,-0.1"}};
+    result.view = {512, 384};
+    result.repeat = 1;
+    result.rounds = 3;
+    result.maps = {256, 512, 1024};
+    if (full) {
+        result.cameras = {"0", "1", "2"};
+        result.lights = {"0", "1", "2"};
+        result.maps = {256, 512, 1024, 2048, 4096};
+        result.methods.insert(result.methods.end() - 2,
+                              {"min-sm-notw", "lispsm-notw", "notw-nodv", "notw-oracle",
+                               "rtw-forward", "rtw-hybrid", "cube6-cull", "dpsm-cull"});
+        result.view = {1024, 768};
+        result.rounds = 5;
+    }
+    result.variants = variants_at(512);
+    return result;
+}
+
+int pictured_size(const options& wanted) {
+    const bool usual = std::find(wanted.maps.begin(), wanted.maps.end(), 512) != wanted.maps.end();
+    return usual ? 512 : *std::min_element(wanted.maps.begin(), wanted.maps.end());
+}
+
+view_pictures resume_view(const options& wanted, const scene& world, renderer& gpu,
+                          const ray_tracer& rays, const camera_view& camera,
+                          const light_view& light, results& all, report_folder& folder,
+                          progress_bar& progress) {
+    const std::string settings = settings_of(wanted, camera, light, all);
+    const std::string name = archive_name({world.name, camera.label, light.label});
+    if (std::optional<archived_view> kept = read_archive(folder.read(name), settings)) {
+        folder.keep();
+        const std::size_t first = all.runs.size();
+        for (run_record& run : kept->runs) {
+            all.runs.push_back(std::move(run));
+            progress.advance();
+        }
+        for (run_pictures& each : kept->pictures.runs) {
+            each.run += first;
+        }
+        return std::move(kept->pictures);
+    }
+    const std::size_t first = all.runs.size();
+    view_pictures seen = run_view(wanted, world, gpu, rays, camera, light, all, folder, progress);
+    archived_view archived{{all.runs.begin() + static_cast<std::ptrdiff_t>(first), all.runs.end()},
+                           seen};
+    for (run_pictures& each : archived.pictures.runs) {
+        each.run -= first;
+    }
+    folder.write(name, archive_of(archived, settings));
+    folder.keep();
+    return seen;
+}
+
+} // namespace lab

@@ -1,0 +1,169 @@
+// What a sweep makes of its runs: fronts, scores, equal quality, budgets; and archives of views.
+#include "lab/accuracy.hpp"
+#include "lab/sweep.hpp"
+#include "lab/view_archive.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace {
+
+/// A run with so many of 1000 samples wrong.
+lab::run_record run_of(const std::string& scene, const std::string& method, int map,
+                       std::size_t wrong, double ms, std::size_t bytes = 1) {
+    lab::run_record run{};
+    run.scene = scene;
+    run.camera = "0";
+    run.light = "0";
+    run.method = method;
+    run.map = map;
+    run.against_truth.samples = 1000;
+    run.against_truth.false_light = wrong;
+    lab::add_times(run.result, std::vector<double>{ms});
+    run.result.bytes = bytes;
+    return run;
+}
+
+std::vector<std::size_t> all_of(const std::vector<lab::run_record>& runs) {
+    std::vector<std::size_t> which(runs.size());
+    std::iota(which.begin(), which.end(), std::size_t(0));
+    return which;
+}
+
+bool beats(const lab::run_record& a, const lab::run_record& b, lab::cost of) {
+    return lab::cost_of(a, of) <= lab::cost_of(b, of) && *lab::wrong_of(a) <= *lab::wrong_of(b) &&
+           (lab::cost_of(a, of) < lab::cost_of(b, of) || *lab::wrong_of(a) < *lab::wrong_of(b));
+}
+
+} // namespace
+
+TEST_CASE("front: nobody on it is beaten, everybody else is, or is equal to one on it") {
+    std::mt19937 random(1);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<lab::run_record> runs;
+        std::uniform_int_distribution<int> count(0, 20);
+        std::uniform_int_distribution<int> value(1, 12);
+        for (int i = count(random); i > 0; --i) {
+            runs.push_back(run_of("a", "sm", 512, static_cast<std::size_t>(value(random)),
+                                  value(random), static_cast<std::size_t>(value(random))));
+        }
+        for (const lab::cost of : {lab::cost::time, lab::cost::bytes}) {
+            const std::vector<std::size_t> front = lab::pareto_front(runs, all_of(runs), of);
+            for (std::size_t i = 0; i < runs.size(); ++i) {
+                const bool on = std::find(front.begin(), front.end(), i) != front.end();
+                const bool beaten = std::any_of(runs.begin(), runs.end(), [&](const auto& other) {
+                    return beats(other, runs[i], of);
+                });
+                const bool twin = std::any_of(front.begin(), front.end(), [&](std::size_t j) {
+                    return j != i && !beats(runs[j], runs[i], of) && !beats(runs[i], runs[j], of) &&
+                           lab::cost_of(runs[j], of) == lab::cost_of(runs[i], of);
+                });
+                REQUIRE(on == (!beaten && !twin));
+            }
+        }
+    }
+}
+
+TEST_CASE("front: a run without samples is not on it") {
+    std::vector<lab::run_record> runs{run_of("a", "sm", 512, 10, 1.0)};
+    runs.front().against_truth.samples = 0;
+    REQUIRE(lab::pareto_front(runs, all_of(runs), lab::cost::time).empty());
+    REQUIRE(lab::score_methods(runs).empty());
+    REQUIRE(lab::match_quality(runs, std::vector<std::string>{"sm"}, 512).empty());
+    REQUIRE(lab::choose_for_budgets(runs, 512, std::vector<double>{1.0}).empty());
+}
+
+TEST_CASE("scores: geometric means of ratios at equal sizes") {
+    const std::vector<lab::run_record> runs{
+        run_of("a", "sm", 512, 100, 1.0, 10), run_of("a", "dv", 512, 50, 2.0, 10),
+        run_of("b", "sm", 512, 10, 4.0, 10), run_of("b", "dv", 512, 20, 4.0, 40),
+        run_of("b", "dv", 256, 40, 3.0, 40)};
+    const std::vector<lab::method_score> scores = lab::score_methods(runs);
+    REQUIRE(scores.size() == 2); // nothing to compare dv at 256 with
+    REQUIRE(scores[0].method == "sm");
+    REQUIRE(scores[0].wrong == Approx(1.0));
+    REQUIRE(scores[1].views == 2);
+    REQUIRE(scores[1].wrong == Approx(1.0)); // half and double
+    REQUIRE(scores[1].time == Approx(std::sqrt(2.0)));
+    REQUIRE(scores[1].bytes == Approx(2.0));
+    REQUIRE((scores[1].better == 1 && scores[1].worse == 1));
+}
+
+TEST_CASE("equal quality: the cheapest size that has no more wrong pixels, or none") {
+    const std::vector<lab::run_record> runs{
+        run_of("a", "notw", 512, 20, 5.0), run_of("a", "sm", 256, 100, 1.0),
+        run_of("a", "sm", 1024, 20, 3.0),  run_of("a", "sm", 2048, 10, 9.0),
+        run_of("a", "dv", 512, 30, 1.0),   run_of("a", "raytraced", 0, 0, 1.0)};
+    const std::vector<lab::equal_quality> rows =
+        lab::match_quality(runs, std::vector<std::string>{"notw", "absent"}, 512);
+    REQUIRE(rows.size() == 2);
+    REQUIRE((rows[0].method == "sm" && rows[0].run == std::size_t(2) && rows[0].target == 0));
+    REQUIRE((rows[1].method == "dv" && !rows[1].run));
+}
+
+TEST_CASE("budgets: the least error that the time allows, on all views of the scene") {
+    const std::vector<lab::run_record> runs{
+        run_of("a", "sm", 512, 100, 1.0),  run_of("a", "dv", 512, 50, 1.4),
+        run_of("a", "notw", 512, 10, 3.0), run_of("a", "raytraced", 0, 0, 0.1),
+        run_of("b", "sm", 512, 100, 1.0),  run_of("b", "dv", 512, 90, 1.4)};
+    const double any = std::numeric_limits<double>::infinity();
+    const std::vector<double> budgets{0.5, 1.0, 1.5, any};
+    const std::vector<lab::budget_choice> rows = lab::choose_for_budgets(runs, 512, budgets);
+    // nothing at half the time; a, b, and both, where notw did not run everywhere
+    REQUIRE(rows.size() == 9);
+    const auto at = [&](std::size_t i) { return rows[i].scene + " " + rows[i].method; };
+    REQUIRE((at(0) == "a sm" && at(1) == "a dv" && at(2) == "a notw"));
+    REQUIRE((at(3) == "b sm" && at(4) == "b dv" && at(5) == "b dv"));
+    REQUIRE((at(6) == "all sm" && at(7) == "all dv" && at(8) == "all dv"));
+    REQUIRE(rows[7].wrong == Approx(std::sqrt(0.05 * 0.09)));
+    REQUIRE(rows[7].time == Approx(1.4));
+}
+
+TEST_CASE("archives: what goes in comes out, and nothing of other settings or broken bytes") {
+    lab::archived_view view{};
+    lab::run_record run = run_of("a", "notw", 512, 20, 5.0, 77);
+    run.kind = "spot";
+    run.variant = "tables 32";
+    run.result.weakened = 0.25;
+    run.result.passes = {{"shadow map", 1.5}};
+    run.result.cpu_setup_us = {{"light matrix", 0.5}};
+    run.result.status = {"unbounded"};
+    run.result.texels.emplace();
+    run.result.texels->facing.p99 = 3.0;
+    view.runs.push_back(run);
+    view.pictures.scene = "a";
+    view.pictures.reference = {2, 1, {1, 2, 3}};
+    view.pictures.runs.push_back({0, {1, 1, {9}}, {}, {}, {{"counts", {1, 2, {4, 5}}}}});
+    const std::vector<std::uint8_t> bytes = lab::archive_of(view, "settings");
+    const std::optional<lab::archived_view> back = lab::read_archive(bytes, "settings");
+    REQUIRE(back);
+    lab::results before;
+    before.runs = view.runs;
+    lab::results after;
+    after.runs = back->runs;
+    REQUIRE(lab::json_of(before) == lab::json_of(after));
+    REQUIRE(back->pictures.reference.bytes == std::vector<std::uint8_t>{1, 2, 3});
+    REQUIRE(back->pictures.runs.at(0).explanations.at(0).first == "counts");
+    REQUIRE(back->pictures.runs.at(0).explanations.at(0).second.height == 2);
+    REQUIRE_FALSE(lab::read_archive(bytes, "others"));
+    REQUIRE_FALSE(lab::read_archive({}, "settings"));
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        REQUIRE_FALSE(lab::read_archive(std::span(bytes).first(size), "settings"));
+    }
+}
+
+TEST_CASE("sweeps: both name methods and sizes, and nothing else is a sweep") {
+    REQUIRE(lab::options_of_sweep("short").rounds > 1);
+    REQUIRE(lab::options_of_sweep("full").maps.size() > lab::options_of_sweep("short").maps.size());
+    REQUIRE_THROWS_AS(lab::options_of_sweep("long"), lab::bad_input);
+    lab::options wanted;
+    wanted.maps = {256, 512};
+    REQUIRE(lab::pictured_size(wanted) == 512);
+    wanted.maps = {256, 64};
+    REQUIRE(lab::pictured_size(wanted) == 64);
+}
