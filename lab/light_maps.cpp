@@ -1,5 +1,6 @@
 #include "lab/light_maps.hpp"
 
+#include <warpshadow/cascades.hpp>
 #include <warpshadow/cube.hpp>
 #include <warpshadow/fit.hpp>
 #include <warpshadow/lispsm.hpp>
@@ -83,6 +84,28 @@ light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
         result.matrix = ws::crop_matrix(result.matrix, rect).matrix;
     }
     return result;
+}
+
+/// The camera with a volume that turning does not change, and moving rarely does.
+ws::frustum<double> turning_camera(const scene& world, const ws::frustum<double>& camera) {
+    ws::frustum<double> turning = camera;
+    // a far plane that depends on where the camera looks would change the texels with it
+    turning.volume.far_distance = 0.0;
+    for (const glm::dvec3& corner : corners_of(world.box)) {
+        turning.volume.far_distance =
+            std::max(turning.volume.far_distance, glm::length(corner - camera.eye));
+    }
+    // and one that depends on where it stands: in powers of two, as rarely as can be
+    turning.volume.far_distance = std::exp2(std::ceil(std::log2(turning.volume.far_distance)));
+    turning.volume.near_distance = turning.volume.far_distance * 0x1p-13;
+    return turning;
+}
+
+ws::stable_options<double> stable_fits(int map_size) {
+    ws::stable_options<double> options;
+    options.map_size = map_size;
+    options.clip = ws::clip::opengl;
+    return options;
 }
 
 } // namespace
@@ -189,24 +212,33 @@ light_maps minimal_maps(const scene& world, const ws::frustum<double>& camera,
 
 light_maps stable_maps(const scene& world, const ws::frustum<double>& camera,
                        const light_view& view, int map_size) {
-    ws::frustum<double> turning = camera;
-    // a far plane that depends on where the camera looks would change the texels with it
-    turning.volume.far_distance = 0.0;
-    for (const glm::dvec3& corner : corners_of(world.box)) {
-        turning.volume.far_distance =
-            std::max(turning.volume.far_distance, glm::length(corner - camera.eye));
-    }
-    // and one that depends on where it stands: in powers of two, as rarely as can be
-    turning.volume.far_distance = std::exp2(std::ceil(std::log2(turning.volume.far_distance)));
-    turning.volume.near_distance = turning.volume.far_distance * 0x1p-13;
-    ws::stable_options<double> options;
-    options.map_size = map_size;
-    options.clip = ws::clip::opengl;
-    const ws::stable_result<double> fit = ws::stable_fit(turning, view.light, world.box, options);
+    const ws::stable_result<double> fit =
+        ws::stable_fit(turning_camera(world, camera), view.light, world.box, stable_fits(map_size));
     check_reach(world, view, fit.flags);
     light_maps result;
     result.maps.push_back({fit.matrix, true});
     result.flags = fit.flags;
+    return result;
+}
+
+light_maps cascade_maps(const scene& world, const ws::frustum<double>& camera,
+                        const light_view& view, int count, int map_size) {
+    const auto slices = static_cast<std::size_t>(count);
+    std::vector<double> splits(slices + 1);
+    std::vector<ws::cascade<double>> cascades(slices);
+    ws::cascade_options<double> options; // of lambda 1/2, without a blend
+    options.fit = stable_fits(map_size);
+    light_maps result;
+    result.flags =
+        ws::fit_cascades(turning_camera(world, camera), view.light, world.box, options,
+                         std::span<double>(splits), std::span<ws::cascade<double>>(cascades))
+            .flags;
+    for (const ws::cascade<double>& each : cascades) {
+        check_reach(world, view, each.fit.flags);
+        result.maps.push_back({each.fit.matrix, true});
+        result.flags |= each.fit.flags;
+    }
+    split_by_depth(result, camera, {splits.begin() + 1, splits.end() - 1});
     return result;
 }
 

@@ -77,12 +77,18 @@ light_maps minimal_maps(const scene& world, const warpshadow::frustum<double>& c
 light_maps stable_maps(const scene& world, const warpshadow::frustum<double>& camera,
                        const light_view& view, int map_size);
 
+/// `pssm` (Zhang et al. 2006): the same for each of `count` slices of the view, practical splits of
+/// which no part depends on where the camera looks; sunlight.
+light_maps cascade_maps(const scene& world, const warpshadow::frustum<double>& camera,
+                        const light_view& view, int count, int map_size);
+
 /// `lispsm` (Wimmer et al. 2004, Scherzer 2005): the body that the camera sees, warped by one
 /// matrix; face by face for a point light.
 light_maps lispsm_maps(const scene& world, const warpshadow::frustum<double>& camera,
                        const light_view& view);
 
-/// The same map for each of several slices of the view.
+/// A map for each of several slices of the view: the one there is serves all, unless they have
+/// theirs.
 void split_by_depth(light_maps& maps, const warpshadow::frustum<double>& camera,
                     std::vector<double> splits);
 

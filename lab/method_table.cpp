@@ -18,6 +18,8 @@ constexpr std::array methods{
     method{.name = "stable", .base = map_base::stable},
     method{.name = "min-sm", .base = map_base::minimal},
     method{.name = "dv", .desired_view = true},
+    // parallel-split shadow maps (Zhang et al. 2006), practical splits
+    method{.name = "pssm", .base = map_base::cascades, .partitions = 4},
     // sample distribution shadow maps (Lauritzen et al. 2011), in equal ratios of depth
     method{.name = "sdsm", .partitions = 4, .desired_view = true},
     method{.name = "lispsm", .base = map_base::lispsm},
@@ -153,7 +155,8 @@ std::optional<std::string> why_not(std::string_view name, const light_view& ligh
     if (!how.for_points.empty() && light.light.kind == ws::light_kind::point) {
         return "for a point light it is called " + std::string(how.for_points);
     }
-    if (how.base == map_base::stable && light.light.kind != ws::light_kind::directional) {
+    if ((how.base == map_base::stable || how.base == map_base::cascades) &&
+        light.light.kind != ws::light_kind::directional) {
         return "a texel of a fixed size has no meaning for a light with a position";
     }
     if (light.light.kind == ws::light_kind::point && how.partitions > 1) {

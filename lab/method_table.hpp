@@ -17,6 +17,7 @@ namespace lab {
 enum class map_base {
     whole_scene, ///< all that the light reaches
     stable,      ///< the ball around the view, on a fixed grid
+    cascades,    ///< the same for slices of the view
     minimal,     ///< what the camera can see
     lispsm,      ///< the same, warped by one matrix
     all_around   ///< faces or hemispheres of a point light

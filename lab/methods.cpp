@@ -43,6 +43,11 @@ int size_of_maps(const method& how, int map_size) {
 
 map_resources resources(const method& how, const view_request& request, std::size_t maps) {
     const warp_options options = request.tables.over(how.tables);
+/// Maps that a method draws: as many as were chosen, unless its partitions share what was.
+std::size_t count_of_maps(const method& how, const light_maps& chosen) {
+    return std::max(chosen.maps.size(), static_cast<std::size_t>(how.partitions));
+}
+
     const int size = size_of_maps(how, request.map_size);
     const int cells = how.warp ? std::min(options.tables, size) : 0;
     return {size, maps, cells, options.rectilinear ? 1 : cells};
@@ -86,6 +91,10 @@ struct renderer::state {
         }
         return how.base == map_base::lispsm
                    ? lispsm_maps(world, camera, request.light)
+        if (how.base == map_base::cascades) {
+            return cascade_maps(world, camera, request.light, how.partitions,
+                                size_of_maps(how, request.map_size));
+        }
                    : minimal_maps(world, camera, request.light, request.map_size, memory);
     }
 
@@ -98,7 +107,7 @@ struct renderer::state {
             gpu.draw_view(seen, camera_matrix(camera), glm::vec3(request.camera.eye));
         });
         gpu.use(seen, chosen, request.light.light);
-        if (how.partitions > 1) {
+        if (chosen.maps.size() < count_of_maps(how, chosen)) {
             gpu.timed_pass("depth range", [&] { split(how, camera, chosen); });
             gpu.use(seen, chosen, request.light.light);
         }
@@ -208,8 +217,8 @@ struct renderer::state {
     standing_view prepare(const method& how, const view_request& request) {
         light_memory memory;
         light_maps chosen = choose_maps(how, request, memory);
-        const std::size_t count = chosen.maps.size() * static_cast<std::size_t>(how.partitions);
-        standing_view view{resources(how, request, count), {}, std::move(chosen)};
+        map_resources maps = resources(how, request, count_of_maps(how, chosen));
+        standing_view view{std::move(maps), {}, std::move(chosen)};
         fit_us.clear();
         culling_us.clear();
         bool grown = false;
@@ -505,9 +514,8 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     auto found = s.moving.find(key);
     if (found == s.moving.end()) {
         light_memory unused;
-        const std::size_t count = s.choose_maps(how, request, unused).maps.size();
-        moving_resources fresh{
-            resources(how, request, count * static_cast<std::size_t>(how.partitions)), {}};
+        const light_maps first = s.choose_maps(how, request, unused);
+        moving_resources fresh{resources(how, request, count_of_maps(how, first)), {}};
         found = s.moving.emplace(key, std::move(fresh)).first;
         light_memory copy = memory.light;
         s.frame(how, request, copy, found->second.maps, found->second.shadows, false); // warms up

@@ -15,13 +15,13 @@ import time
 from pathlib import Path
 
 lab, data, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-METHODS = ["sm", "stable", "min-sm", "dv", "sdsm", "lispsm", "fitted", "fitted-2", "min-sm-notw",
+METHODS = ["sm", "stable", "min-sm", "dv", "pssm", "sdsm", "lispsm", "fitted", "fitted-2", "min-sm-notw",
            "lispsm-notw", "fitted-notw", "notw", "notw-nodv", "notw-edges", "notw-oracle",
            "rtw-forward", "rtw-backward", "rtw-hybrid"]
 FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-gs", "cube6-efc-gs",
                     "dpsm", "dpsm-cull", "dpsm-pc", "dpsm-gs", "dpsm-cull-gs", "dpsm-pc-gs",
                     "cube-notw", "dpsm-notw"]
-NOT_FOR_POINTS = ["sm", "stable", "sdsm", "fitted-2", "notw", "notw-nodv", "notw-edges",
+NOT_FOR_POINTS = ["sm", "stable", "pssm", "sdsm", "fitted-2", "notw", "notw-nodv", "notw-edges",
                   "notw-oracle", "rtw-forward", "rtw-backward", "rtw-hybrid"]
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
@@ -146,7 +146,10 @@ def check_every_method():
     assert [e["method"] for e in first["not_applicable"]] == FOR_POINTS_ALONE
     by_name = {(r["method"], r["map"]): r["wrong_pixel_ratio"] for r in first["runs"]}
     assert by_name["sm", 128] < by_name["sm", 64], "a larger map is wrong less often"
+    assert by_name["pssm", 128] < by_name["pssm", 64]
     assert by_name["dv", 64] < 0.5, "better than a coin"
+    memory = {r["method"]: r["bytes"] for r in first["runs"] if r["map"] == 128}
+    assert memory["pssm"] == memory["sdsm"] == memory["sm"], "partitions share the texels of one map"
     check_metric(first)
 
     kept = {p.name: p.read_bytes() for p in (scratch / "every").glob("*.png")}

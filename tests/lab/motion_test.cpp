@@ -7,10 +7,14 @@
 
 #include <catch2/catch.hpp>
 
+#include <glm/gtc/matrix_access.hpp>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -167,6 +171,66 @@ TEST_CASE("the minimal maps of the lab hold what the camera sees and a light can
         }
     }
     CHECK(looked_up > 1000);
+}
+
+TEST_CASE("cascades hold what the camera sees, with texels that turning does not change") {
+    const lab::scene world = room();
+    std::mt19937 random(11); // NOLINT: a fixed seed makes the test repeat
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const auto inside = [&] {
+        return glm::mix(world.box.lo, world.box.hi,
+                        glm::dvec3(unit(random), unit(random), unit(random)));
+    };
+    int looked_up = 0;
+    std::array<int, 4> of_map{};
+    for (int turn = 0; turn < 200; ++turn) {
+        const glm::dvec3 eye = inside();
+        const double fov = 0.3 + unit(random);
+        const lab::light_view light{"sun", ws::sun(inside() - inside())};
+        std::vector<double> texels;
+        std::vector<double> splits;
+        for (int look = 0; look < 3; ++look) {
+            const ws::frustum<double> view =
+                lab::camera_frustum(world, {"", eye, inside(), fov}, {16, 9});
+            const lab::light_maps maps = lab::cascade_maps(world, view, light, 4, 128);
+            REQUIRE(maps.maps.size() == 4);
+            REQUIRE(maps.choice == lab::map_choice::view_depth);
+            for (std::size_t i = 0; i < maps.maps.size(); ++i) {
+                // of rows that are orthogonal, the first is two texels over the side's length
+                const glm::dvec3 across = glm::dvec3(glm::row(maps.maps[i].matrix, 0));
+                const double texel = 2.0 / (128.0 * glm::length(across));
+                if (look == 0) {
+                    texels.push_back(texel);
+                } else {
+                    REQUIRE(texel == Approx(texels[i]).epsilon(1e-12));
+                }
+            }
+            REQUIRE((look == 0 || maps.splits == splits));
+            splits = maps.splits;
+            const glm::dmat4 clip_from_world(lab::camera_matrix(view));
+            for (int i = 0; i < 50; ++i) {
+                const glm::dvec3 p = inside();
+                const glm::dvec4 seen = clip_from_world * glm::dvec4(p, 1.0);
+                if (seen.w <= 0.0 || std::abs(seen.x) >= 0.999 * seen.w ||
+                    std::abs(seen.y) >= 0.999 * seen.w || seen.z <= -seen.w) {
+                    continue;
+                }
+                const double depth = glm::dot(maps.depth_plane, glm::dvec4(p, 1.0));
+                const auto map = static_cast<std::size_t>(std::count_if(
+                    splits.begin(), splits.end(), [&](double split) { return depth >= split; }));
+                const glm::dvec4 clip = maps.maps[map].matrix * glm::dvec4(p, 1.0);
+                REQUIRE(glm::all(
+                    glm::lessThanEqual(glm::abs(glm::dvec3(clip)), glm::dvec3(1.0 + 1e-9))));
+                ++of_map[map];
+                ++looked_up;
+            }
+        }
+        REQUIRE(splits.size() == 3);
+        REQUIRE(std::is_sorted(texels.begin(), texels.end()));
+    }
+    CHECK(looked_up > 1000);
+    CHECK(of_map[0] > 100);
+    CHECK(of_map[3] > 0);
 }
 
 TEST_CASE("lispsm under a spot light keeps a depth range although casters reach to the light") {
