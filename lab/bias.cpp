@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <string_view>
 
 namespace lab {
@@ -17,6 +18,20 @@ namespace {
                     "footprint, all but plane with +linear or +back-face, not '" +
                     text + "'");
 }
+
+struct filter_kind {
+    std::string_view name;
+    shadow_filter kind;
+    double most; ///< largest radius of a kernel; 0 for filters without
+};
+constexpr std::array filter_kinds{
+    filter_kind{"none", shadow_filter::none, 0.0},
+    filter_kind{"pcf", shadow_filter::pcf, 0.0},
+    filter_kind{"blur", shadow_filter::blur, 0.0},
+    filter_kind{"pcf-texels", shadow_filter::pcf_texels, 64.0},
+    filter_kind{"pcf-light", shadow_filter::pcf_light, 1e6},
+    filter_kind{"pcf-footprint", shadow_filter::pcf_footprint, 1e6},
+};
 
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
@@ -29,15 +44,23 @@ std::vector<std::string_view> parts_of(std::string_view text, char separator) {
     return parts;
 }
 
-/// A number from 0 to `most`.
-double number_of(std::string_view part, double most, const std::string& text) {
+/// A number from 0 to `most`, or nothing.
+std::optional<double> number_up_to(std::string_view part, double most) {
     double value = 0.0;
     const char* const end = part.data() + part.size();
     const auto [rest, error] = std::from_chars(part.data(), end, value);
     if (part.empty() || error != std::errc() || rest != end || !(value >= 0.0 && value <= most)) {
-        refuse(text);
+        return std::nullopt;
     }
     return value;
+}
+
+double number_of(std::string_view part, double most, const std::string& text) {
+    const std::optional<double> value = number_up_to(part, most);
+    if (!value) {
+        refuse(text);
+    }
+    return *value;
 }
 
 bool counts(const g_buffer_samples& samples, std::size_t i) {
@@ -89,21 +112,37 @@ bias_choice parse_bias(const std::string& text) {
     return result;
 }
 
-shadow_filter parse_filter(const std::string& text) {
-    if (text == "pcf") {
-        return shadow_filter::pcf;
+filter_choice parse_filter(const std::string& text) {
+    const std::vector<std::string_view> words = parts_of(text, ':');
+    for (const filter_kind& each : filter_kinds) {
+        if (each.name != words.front() || words.size() != (each.most > 0.0 ? 2u : 1u)) {
+            continue;
+        }
+        filter_choice result{each.kind};
+        if (each.most > 0.0) {
+            result.radius = number_up_to(words[1], each.most).value_or(0.0);
+        }
+        if (result.radius > 0.0 || each.most == 0.0) {
+            return result;
+        }
     }
-    if (text == "blur") {
-        return shadow_filter::blur;
-    }
-    if (text != "none") {
-        throw bad_input("--filter wants none, pcf or blur, not '" + text + "'");
-    }
-    return shadow_filter::none;
+    throw bad_input("--filter wants none, pcf, blur, pcf-texels:RADIUS (to 64), pcf-light:RADIUS "
+                    "or pcf-footprint:RADIUS, not '" +
+                    text + "'");
 }
 
-std::string filter_name(shadow_filter kind) {
-    return kind == shadow_filter::none ? "none" : kind == shadow_filter::pcf ? "pcf" : "blur";
+bool has_kernel(shadow_filter kind) {
+    return kind >= shadow_filter::pcf_texels;
+}
+
+std::string filter_name(const filter_choice& filter) {
+    std::string name(filter_kinds[static_cast<std::size_t>(filter.kind)].name);
+    if (has_kernel(filter.kind)) {
+        char number[32];
+        std::snprintf(number, sizeof number, ":%g", filter.radius);
+        name += number;
+    }
+    return name;
 }
 
 bias_measures measure_bias(const g_buffer_samples& samples, std::span<const std::uint8_t> truth,

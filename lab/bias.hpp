@@ -46,25 +46,34 @@ struct bias_choice {
 /// @throws bad_input
 bias_choice parse_bias(const std::string& text);
 
-/// What is shown instead of hard shadows; nothing that is counted depends on it.
+/// What is shown instead of hard shadows; nothing that is counted depends on it. Kernels are
+/// mirrored in shaders/kernel.glsl.
 enum class shadow_filter {
-    none,
-    pcf, ///< 2 × 2 texels
-    blur ///< the same, blurred in the picture
+    none = 0,
+    pcf = 1,          ///< 2 × 2 texels
+    blur = 2,         ///< the same, blurred in the picture
+    pcf_texels = 3,   ///< a kernel of fixed size in texels (Rosen 2012, §6.2)
+    pcf_light = 4,    ///< one of fixed size in the scene: each tap is moved, then warped
+    pcf_footprint = 5 ///< the same by the warp's Jacobian at the receiver
 };
-
-/// @throws bad_input for anything but none, pcf and blur.
-shadow_filter parse_filter(const std::string& text);
-
-/// Its name as parse_filter takes it.
-std::string filter_name(shadow_filter kind);
 
 /// A filter with its strength.
 struct filter_choice {
     shadow_filter kind = shadow_filter::none;
     int blurs = 4;               ///< iterations of the blur
     bool less_with_depth = true; ///< beyond the median depth; else the same everywhere
+    double radius = 0.0;         ///< half the side of a kernel, in texels or in scene units
 };
+
+/// Reads none, pcf, blur, pcf-texels:R, pcf-light:R and pcf-footprint:R.
+/// @throws bad_input
+filter_choice parse_filter(const std::string& text);
+
+/// Its name as parse_filter takes it.
+std::string filter_name(const filter_choice& filter);
+
+/// Whether a filter has a kernel of a size of its own.
+[[nodiscard]] bool has_kernel(shadow_filter kind);
 
 /// What a bias did to one view sample that faces the light.
 struct bias_sample {

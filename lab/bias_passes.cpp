@@ -156,8 +156,15 @@ std::vector<float> bias_passes::light(map_resources& maps, const light_maps& cho
     gl::texture share(GL_R32F, size.x, size.y);
     share.clear(glm::vec4(0.0f));
     share.bind_image(0, GL_WRITE_ONLY);
-    dispatch(find(filter_, "filtered_light.comp", {}, warped, how), maps, chosen, warped, how,
-             0.5f);
+    if (has_kernel(filter.kind)) {
+        const gl::program& kernel = find(kernel_, "kernel_light.comp", {"KERNEL"}, warped, how);
+        kernel.set("kernel_kind", static_cast<int>(filter.kind));
+        kernel.set("kernel_radius", static_cast<float>(filter.radius));
+        dispatch(kernel, maps, chosen, warped, how, 0.0f); // the kernel knows how far it reaches
+    } else {
+        dispatch(find(filter_, "filtered_light.comp", {}, warped, how), maps, chosen, warped, how,
+                 0.5f);
+    }
     if (filter.kind == shadow_filter::blur && filter.blurs > 0) {
         if (!blur_) {
             blur_ = gpu_.compute("blur.comp");

@@ -47,7 +47,7 @@ class bias_passes {
 
     passes& gpu_;
     std::optional<gl::program> draw_linear_, draw_back_, blur_;
-    variants test_, measure_, filter_;
+    variants test_, measure_, filter_, kernel_;
 };
 
 } // namespace lab

@@ -31,6 +31,15 @@ Biases (--bias), each measured by its acne and by how far shadows recede:
   linear, back-face         none, with the light's own depth, or with back faces in the map;
                             slope+linear, footprint+back-face and so on
 
+Filters (--filter) of the shadows in the pictures:
+  none, pcf               hard edges; 2 x 2 texels
+  blur                    2 x 2 texels, blurred in the picture
+  pcf-texels:RADIUS       a square kernel, half its side in texels of the map as it is drawn: it
+                          smooths the stairs, and a warp makes it wide here and narrow there
+  pcf-light:RADIUS        half its side in scene units: as wide everywhere; each tap is moved in the
+                          light's space and then warped
+  pcf-footprint:RADIUS    the same with the warp taken as linear over the kernel
+
 Ways to draw maps with tables (--raster); the warp bends edges, rasterisers draw straight ones:
   none            warped corners, all else interpolated
   fragment        the same, with the depth of the unwarped place per fragment
@@ -211,8 +220,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
     list("--bias", biases, "Comma-separated biases to compare (plane, and not measured)");
     app.add_option("--filter", filter,
-                   "Shadows in the pictures: none, pcf (2 x 2 texels), blur (the same, blurred in "
-                   "the picture); wrong pixels are counted without (none)");
+                   "Shadows in the pictures, see below; wrong pixels are counted without (none)");
     list("--raster", rasters,
          "Comma-separated ways to draw maps with tables, to compare (exact); see below");
     warp_arguments tables;
@@ -323,7 +331,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         throw bad_input("--path and --preset take one --raster");
     }
     if (!filter.empty()) {
-        result.filter.kind = parse_filter(filter);
+        result.filter = parse_filter(filter);
     }
     if (!result.path.empty() && !(biases.empty() && filter.empty())) {
         throw bad_input("--bias and --filter are for a camera that stands still, not for --path");

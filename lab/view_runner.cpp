@@ -145,7 +145,7 @@ class view_runner {
             record.variant = each.variant->name;
         }
         if (!record.result.light.empty()) {
-            record.filter = filter_name(wanted_.filter.kind);
+            record.filter = filter_name(wanted_.filter);
         }
         return record;
     }

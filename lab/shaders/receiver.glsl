@@ -17,6 +17,9 @@ uniform float bias_radius; // reach of the filter in texels
 #ifdef LINEAR
 #include "lab/linear_depth.glsl"
 #endif
+#ifdef KERNEL
+#include "lab/kernel.glsl"
+#endif
 
 struct map_receiver {
     int map;
@@ -29,6 +32,11 @@ struct map_receiver {
     vec2 inverse_w_slope;
     float bias;     // in units of depth, to be subtracted
     float recede;   // the bias along the light ray, in sides of a texel
+#ifdef KERNEL
+    mat2 jacobian;
+    vec2 radii; // half the sides of the kernel before the warp
+    vec2 reach; // and in texels of the map as it is drawn
+#endif
 };
 
 // Texel in which a place of the map lies.
@@ -123,15 +131,22 @@ bool receiver_at(ivec2 pixel, out map_receiver r)
     slope = ws_map_normal(steps[0], steps[1]);
 #endif
     vec2 size = vec2(textureSize(shadow_map, 0).xy);
+    float radius = bias_radius;
+#ifdef KERNEL
+    r.jacobian = jacobian;
+    r.radii = kernel_in_map(matrix, world.xyz);
+    r.reach = kernel_in_texels(jacobian, r.radii, 1.0 / size);
+    radius = max(r.reach.x, r.reach.y);
+#endif
     ws_bias_settings settings = ws_settings_for(size, rounding * r.gain);
-    settings.radius = bias_radius;
+    settings.radius = radius;
     settings.largest = 1.0; // what a bias takes is to be seen, not hidden
     settings.deviation = 1.4143 * rounding * r.gain;
 #ifdef LINEAR
     // over the texel the depth of a plane changes by its slope here times the ratio of 1 / w here
     // and there
     vec2 per_texel = abs(r.inverse_w_slope) * settings.texel;
-    float drift = (bias_radius + 0.5) * (per_texel.x + per_texel.y) * abs(warp_w);
+    float drift = (radius + 0.5) * (per_texel.x + per_texel.y) * abs(warp_w);
     settings.slope_ratio = 1.0 / max(1.0 - drift, 1e-3);
 #endif
     if (bias_kind == 2) {

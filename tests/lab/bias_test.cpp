@@ -43,9 +43,20 @@ TEST_CASE("biases are read") {
         CAPTURE(text);
         CHECK_THROWS_AS(lab::parse_bias(text), lab::bad_input);
     }
-    CHECK_THROWS_AS(lab::parse_filter("gauss"), lab::bad_input);
-    for (const char* const text : {"none", "pcf", "blur"}) {
+}
+
+TEST_CASE("filters are read and written alike") {
+    for (const char* const text :
+         {"none", "pcf", "blur", "pcf-texels:2.5", "pcf-light:0.05", "pcf-footprint:300"}) {
         CHECK(lab::filter_name(lab::parse_filter(text)) == text);
+    }
+    CHECK(lab::filter_name({}) == "none");
+    CHECK(lab::parse_filter("pcf-texels:2.5").radius == 2.5);
+    for (const char* const text :
+         {"", "gauss", "pcf:1", "blur:", "pcf-texels", "pcf-texels:", "pcf-texels:0",
+          "pcf-texels:65", "pcf-light:-1", "pcf-light:nan", "pcf-light:1:2", "pcf-footprint:x"}) {
+        CAPTURE(text);
+        CHECK_THROWS_AS(lab::parse_filter(text), lab::bad_input);
     }
 }
 
