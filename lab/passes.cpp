@@ -98,7 +98,7 @@ passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     find_depth_range_ = compute("depth_range.comp");
     crop_ = compute("crop.comp");
     unwarp_centres_ = compute("unwarp_centres.comp");
-    count_histogram_ = compute("histogram.comp");
+    count_histogram_ = compute("histogram.comp", {"WS_SPLAT_MERGED"});
     test_plain_ = compute("shadow_test.comp");
     test_warped_ = compute("shadow_test.comp", {"WARPED"});
     for (const gl::program* program : {&find_desired_view_, &find_depth_range_, &count_histogram_,
@@ -259,7 +259,7 @@ std::vector<std::uint32_t> passes::histogram(std::size_t index, int size) {
     }
     histogram_.clear(glm::uvec4(0u));
     histogram_.bind_image(0, GL_READ_WRITE);
-    count_histogram_.dispatch(view_.x, view_.y);
+    count_histogram_.dispatch((view_.x + 1) / 2, (view_.y + 1) / 2);
     gl::wait_for_writes();
     return histogram_.read<std::uint32_t>();
 }

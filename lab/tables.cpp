@@ -26,6 +26,9 @@ constexpr float edge_bias = 4.0f / static_cast<float>(light_image_size);
 /// near that nothing is ever worth what the distance function gives there.
 constexpr double nearest_share = 1.0 / 256.0;
 
+/// Samples along a side of what an invocation adds up before it counts, with WS_SPLAT_MERGED.
+constexpr int merged = 2;
+
 bool uses_functions(const warp_options& options) {
     return options.functions.distance || options.functions.edge || options.functions.normal;
 }
@@ -46,7 +49,7 @@ table_passes::table_passes(passes& gpu) : gpu_(gpu) {
 }
 
 table_passes::splat_programs& table_passes::programs(const warp_options& options) {
-    std::vector<std::string> defines;
+    std::vector<std::string> defines{"WS_SPLAT_MERGED"};
     if (options.from == analysis::forward) {
         defines.emplace_back("FORWARD");
     }
@@ -134,8 +137,8 @@ void table_passes::splat(map_resources& maps, std::size_t index, const warp_opti
     target.bind_image(0, GL_READ_WRITE);
     const glm::ivec2 samples =
         options.from == analysis::forward ? glm::ivec2(light_image_size) : gpu_.view();
-    program.dispatch((samples.x + options.every - 1) / options.every,
-                     (samples.y + options.every - 1) / options.every);
+    const int side = merged * options.every;
+    program.dispatch((samples.x + side - 1) / side, (samples.y + side - 1) / side);
     gl::wait_for_writes();
     if (classes) {
         weigh_cells_.set("ws_share", options.share);
