@@ -492,6 +492,7 @@ method_result renderer::run(std::string_view name, const view_request& request) 
             maps, chosen, how.warp,
             camera_matrix(camera_frustum(s.gpu.world(), request.camera, s.gpu.view())));
         result.texels = metric_of(extents, maps.size, s.gpu.view());
+        result.texels->finest = finest_of(maps, chosen, request.tables.over(how.tables));
     }
     result.pictures = s.pictures(how, request, chosen, maps);
     if (result.texels) {

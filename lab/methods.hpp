@@ -65,6 +65,9 @@ struct named_picture {
 struct texel_metric {
     warpshadow::metric_summary<double> on_receivers;
     warpshadow::metric_summary<double> facing; ///< without the slope of the surface
+    /// Rosen's maximum effective resolution: texels along u and v of the maps without tables that
+    /// would be as fine as the finest part of these.
+    glm::dvec2 finest{0.0};
 };
 
 /// What a method did.

@@ -2,6 +2,8 @@
 
 #include "lab/measure.hpp"
 
+#include <warpshadow/filter.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -63,6 +65,23 @@ texel_metric metric_of(const std::vector<glm::vec4>& extents, int map_size, glm:
         }
     }
     return {summary_of(on_receivers, map_size, view), summary_of(facing, map_size, view)};
+}
+
+glm::dvec2 finest_of(const map_resources& maps, const light_maps& chosen,
+                     const warp_options& options) {
+    glm::dvec2 finest(maps.size);
+    const auto along = [&](const gl::texture& table) {
+        const std::vector<float> nodes = table.read<float>();
+        const ws::table_view<float> view{nodes, table.width() - 1, table.height()};
+        return static_cast<double>(ws::maximum_effective_resolution(view, maps.size));
+    };
+    for (std::size_t i = 0; i < maps.warps.size(); ++i) {
+        if (chosen.maps[i].used) {
+            const glm::dvec2 found(along(maps.warps[i].rows), along(maps.warps[i].columns));
+            finest = glm::max(finest, options.build.v_first ? glm::dvec2(found.y, found.x) : found);
+        }
+    }
+    return finest;
 }
 
 named_picture heat_map(const std::vector<glm::vec4>& extents, glm::ivec2 view) {

@@ -33,6 +33,11 @@ class metric_passes {
 /// What the extents of all samples come to.
 texel_metric metric_of(const std::vector<glm::vec4>& extents, int map_size, glm::ivec2 view);
 
+/// Maximum effective resolution of the maps in use (Rosen 2012, §6) along u and v; without tables
+/// that is their size.
+glm::dvec2 finest_of(const map_resources& maps, const light_maps& chosen,
+                     const warp_options& options);
+
 /// "texel-extent": blue where a pixel has texels to spare, white where it has one, red where a
 /// texel covers eight pixels or more, in steps of the logarithm; grey where nothing is measured.
 named_picture heat_map(const std::vector<glm::vec4>& extents, glm::ivec2 view);

@@ -163,8 +163,9 @@ std::string table(const results& all) {
                                   : "") +
         "<th class=\"n\">wrong&nbsp;%</th><th class=\"n\">false shadow&nbsp;%</th><th "
         "class=\"n\">false light&nbsp;%</th>"
-        "<th class=\"n\">grazing wrong&nbsp;%</th><th class=\"n\">frame ms</th>"
-        "<th class=\"n\">min–max</th><th class=\"n\">bytes</th><th class=\"n\">triangles</th>"
+        "<th class=\"n\">grazing wrong&nbsp;%</th><th class=\"n\">MER</th>"
+        "<th class=\"n\">frame ms</th><th class=\"n\">min–max</th><th class=\"n\">bytes</th><th "
+        "class=\"n\">triangles</th>"
         "</tr></thead>\n<tbody>\n";
     for (const run_record& run : all.runs) {
         const comparison& c = run.against_truth;
@@ -182,7 +183,7 @@ std::string table(const results& all) {
                 cell(percent_text(c.ratio(c.false_shadow + c.false_light))) +
                 cell(percent_text(c.ratio(c.false_shadow))) +
                 cell(percent_text(c.ratio(c.false_light))) + cell(percent_text(grazing)) +
-                cell(ms_text(r.frame_ms_median)) +
+                cell(finest_text(r)) + cell(ms_text(r.frame_ms_median)) +
                 cell(ms_text(r.frame_ms_min) + "–" + ms_text(r.frame_ms_max)) +
                 cell(bytes_text(r.bytes)) + cell(std::to_string(r.triangles)) + "</tr>\n";
     }

@@ -71,6 +71,7 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     if (r.texels) {
         json["m"] = json_of(r.texels->on_receivers);
         json["m_facing"] = json_of(r.texels->facing);
+        json["mer"] = {r.texels->finest.x, r.texels->finest.y};
         json["storage_factor"] = r.texels->on_receivers.storage_factor;
     }
     ordered_json frame;
@@ -285,6 +286,16 @@ std::string texels_text(std::optional<double> texels) {
     return buffer;
 }
 
+std::string finest_text(const method_result& result) {
+    if (!result.texels) {
+        return "-";
+    }
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.0fx%.0f", result.texels->finest.x,
+                  result.texels->finest.y);
+    return buffer;
+}
+
 std::string ms_text(double ms) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, ms >= 100.0 ? "%.0f" : ms >= 10.0 ? "%.1f" : "%.2f", ms);
@@ -307,7 +318,7 @@ std::string bytes_text(std::size_t bytes) {
 
 std::string table_of(const results& all) {
     std::vector<std::vector<std::string>> rows{{"scene", "camera", "light", "method", "map",
-                                                "wrong %", "false shadow %", "false light %",
+                                                "wrong %", "false shadow %", "false light %", "MER",
                                                 "frame ms", "bytes"}};
     for (const run_record& run : all.runs) {
         const comparison& c = run.against_truth;
@@ -315,7 +326,8 @@ std::string table_of(const results& all) {
                         run.map == 0 ? "-" : std::to_string(run.map),
                         percent_text(c.ratio(c.false_shadow + c.false_light)),
                         percent_text(c.ratio(c.false_shadow)), percent_text(c.ratio(c.false_light)),
-                        ms_text(run.result.frame_ms_median), bytes_text(run.result.bytes)});
+                        finest_text(run.result), ms_text(run.result.frame_ms_median),
+                        bytes_text(run.result.bytes)});
     }
     if (any_bias(all)) {
         const auto insert = [](std::vector<std::string>& row, std::vector<std::string> cells) {

@@ -103,6 +103,9 @@ std::string percent_text(std::optional<double> ratio);
 /// A mean displacement, "-" when there is none.
 std::string texels_text(std::optional<double> texels);
 
+/// Maximum effective resolution of a method's maps, "-" where there is none.
+std::string finest_text(const method_result& result);
+
 /// "4.0 MiB" and the like.
 std::string bytes_text(std::size_t bytes);
 
