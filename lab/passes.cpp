@@ -79,7 +79,8 @@ std::size_t map_resources::bytes() const {
     std::size_t sum = depth.bytes();
     for (const tables& each : warps) {
         for (const gl::texture* part :
-             {&each.counts, &each.rows, &each.columns, &each.centres, &each.classes, &each.lines}) {
+             {&each.counts, &each.rows, &each.columns, &each.centres, &each.classes, &each.lines,
+              &each.boxes[0], &each.boxes[1], &each.common}) {
             sum += part->id() != 0 ? part->bytes() : 0;
         }
     }

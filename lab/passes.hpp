@@ -36,7 +36,9 @@ struct map_resources {
     struct tables {
         tables(int size, int cells, int functions);
         gl::texture counts, rows, columns, centres;
-        gl::texture classes, lines; ///< where a method wants them, see lab/tables.cpp
+        gl::texture classes, lines;       ///< where a method wants them, see lab/tables.cpp
+        std::array<gl::texture, 2> boxes; ///< sums between the boxes of a window that is no box
+        gl::texture common;               ///< the function that all rows share, for the shear limit
         std::vector<std::uint32_t> first_counts, second_counts; ///< read back where wanted
     };
 

@@ -1,10 +1,9 @@
 #include "lab/tables.hpp"
 
-#include <warpshadow/smoothing.hpp>
 #include <warpshadow/warp_build.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <string>
 
 namespace lab {
@@ -40,11 +39,8 @@ bool looks_from_the_light(const warp_options& options) {
 
 } // namespace
 
-table_passes::table_passes(passes& gpu) : gpu_(gpu) {
+table_passes::table_passes(passes& gpu) : gpu_(gpu), axes_(gpu) {
     weigh_cells_ = gpu.compute("weigh_cells.comp");
-    sum_columns_ = gpu.compute("column_sums.comp");
-    build_axis_ = gpu.compute("build_axis.comp");
-    build_power_ = gpu.compute("build_axis.comp", {"WS_BUILD_POWER"});
     none_.shadowed = gl::texture(GL_R8UI, 1, 1);
 }
 
@@ -99,12 +95,11 @@ float table_passes::steps(const warp_options& options, int cells) const {
     return ws::weight_steps(sample_count(options), largest);
 }
 
-float table_passes::power_steps(const warp_options& options, int cells) const {
-    // most steps that all windows of a row can hold, as many in each cell
-    const double all = 4294967296.0 / 2.0;
-    const double each = std::pow(all / cells, static_cast<double>(options.power));
-    const double steps = (all / cells - 1.0) / each;
-    return static_cast<float>(std::exp2(std::floor(std::log2(std::max(steps, 0x1p-20)))));
+std::uint64_t table_passes::most_counts(const warp_options& options) const {
+    const bool weighs = uses_functions(options) || options.from == analysis::forward ||
+                        options.shadows != known_shadows::none;
+    // steps of a weight are such that 32 bits hold their sum
+    return weighs ? std::numeric_limits<std::uint32_t>::max() : sample_count(options);
 }
 
 void table_passes::look_from_the_light(std::size_t index, bool edges) {
@@ -158,23 +153,8 @@ void table_passes::build_axis(map_resources& maps, std::size_t index, const warp
     if (keep_counts) {
         (columns ? warp.second_counts : warp.first_counts) = warp.counts.read<std::uint32_t>();
     }
-    gpu_.timed_pass(columns ? "build columns" : "build rows", [&] {
-        const int size = warp.counts.width();
-        warp.counts.bind_image(0, GL_READ_WRITE);
-        sum_columns_.dispatch(size);
-        gl::wait_for_writes();
-        table.bind_image(1, GL_WRITE_ONLY);
-        const gl::program& build = options.power == 1.0f ? build_axis_ : build_power_;
-        build.set("ws_radius", ws::window_radius(options.build.window, size));
-        // the device computes nodes in float: four times the floor that rounding once needs
-        build.set("ws_floor",
-                  std::max(options.build.floor, 4.0f * ws::smallest_floor<float, float>(size)));
-        build.set("ws_power", options.power);
-        build.set("ws_power_steps", power_steps(options, size));
-        build.use();
-        glDispatchCompute(static_cast<GLuint>(size), 1, 1);
-        gl::wait_for_writes();
-    });
+    gpu_.timed_pass(columns ? "build columns" : "build rows",
+                    [&] { axes_.build(warp, table, options, most_counts(options)); });
 }
 
 void table_passes::build_lines(map_resources& maps, std::size_t index, const warp_options& options,

@@ -15,7 +15,8 @@ namespace lab {
 /// What was given, not yet understood.
 struct warp_arguments {
     std::vector<std::string> importance;
-    std::string tables, window, floor, order, power, subset, cells, collapse, sigma, edge_share;
+    std::string tables, window, smooth, floor, shear, order, power, subset, cells, collapse, sigma,
+        edge_share;
 };
 
 /// Adds the options to a command line that outlives neither.

@@ -45,7 +45,8 @@ struct warp_options {
 struct warp_wishes {
     std::optional<bool> distance, edge, normal, add;
     std::optional<warpshadow::cell_rule> cells, collapse;
-    std::optional<float> window, floor, width, share, power;
+    std::optional<float> window, floor, width, share, power, shear;
+    std::optional<warpshadow::window_shape> shape;
     std::optional<bool> v_first;
     std::optional<int> tables, every;
 
@@ -60,6 +61,8 @@ struct warp_wishes {
         take(options.collapse, collapse);
         take(options.build.window, window);
         take(options.build.floor, floor);
+        take(options.build.shear, shear);
+        take(options.build.shape, shape);
         take(options.build.v_first, v_first);
         take(options.width, width);
         take(options.share, share);

@@ -61,19 +61,21 @@ template <typename T> int radius_for_deviation(T deviation, window_shape shape) 
     return r < 1073741824.0 ? static_cast<int>(std::floor(r + 0.5)) : 1073741824;
 }
 
-/// Power of two that the counts are divided by so that sums over windows fit 64 bits.
+/// Power of two that the counts are divided by so that sums over windows fit.
 ///
 /// A row's window weighs a row by (2r + 1)^(p−1) at most, p the number of passes. The exponent is 0
-/// while samples · min(2r + 1, rows)^(p−1) < 2⁶³: always for a box, and for 2²⁸ samples and 4096
-/// rows with any window.
+/// while samples · min(2r + 1, rows)^(p−1) < 2^bits: with 63 bits always for a box, and for 2²⁸
+/// samples and 4096 rows with any window.
 /// @param samples sum of all counts
 /// @param radius  half-width of the box in rows, not negative
 /// @param rows    number of rows, positive
 /// @param shape   window
-inline int window_shift(std::uint64_t samples, int radius, int rows, window_shape shape) {
+/// @param bits    of the sums, 1 to 63
+inline int window_shift(std::uint64_t samples, int radius, int rows, window_shape shape,
+                        int bits = 63) {
     const std::uint64_t widest =
         static_cast<std::uint64_t>(radius < rows / 2 ? 2 * radius + 1 : rows);
-    std::uint64_t most = std::uint64_t(1) << 63;
+    std::uint64_t most = std::uint64_t(1) << bits;
     for (int pass = 1; pass < box_passes(shape); ++pass) {
         most /= widest;
     }
