@@ -4,6 +4,7 @@
 #include "lab/scene.hpp"
 
 #include <warpshadow/focus.hpp>
+#include <warpshadow/principal_axis.hpp>
 #include <warpshadow/projective.hpp>
 #include <warpshadow/shadow_frustum.hpp>
 
@@ -44,6 +45,7 @@ struct light_maps {
 struct light_memory {
     warpshadow::fit_state fit;
     std::vector<warpshadow::projective_state<double>> bends; ///< per map
+    warpshadow::axis_state turn;                             ///< of a map that is aligned
 };
 
 /// Corners of a box.

@@ -1,5 +1,6 @@
 #include "lab/methods.hpp"
 
+#include "lab/align.hpp"
 #include "lab/bias_passes.hpp"
 #include "lab/light_picture.hpp"
 #include "lab/method_table.hpp"
@@ -51,6 +52,11 @@ std::size_t count_of_maps(const method& how, const light_maps& chosen) {
     const int size = size_of_maps(how, request.map_size);
     const int cells = how.warp ? std::min(options.tables, size) : 0;
     return {size, maps, cells, options.rectilinear ? 1 : cells};
+}
+
+/// Whether turning the map makes sense: not one face of several, and not where a matrix warps.
+bool can_be_turned(const method& how, const light_maps& chosen) {
+    return chosen.choice == map_choice::single && how.base != map_base::lispsm && !how.fitted;
 }
 
 /// What a method keeps on the device while a camera moves.
@@ -131,6 +137,9 @@ struct renderer::state {
             }
             if (how.warp) {
                 const warp_options options = request.tables.over(how.tables);
+                if (options.align && can_be_turned(how, chosen)) {
+                    align(how, options, camera, shadows, memory, maps, chosen);
+                }
                 if (options.build.v_first) {
                     gpu.warp_map(i, glm::dmat4(glm::dvec4(0.0, 1.0, 0.0, 0.0),
                                                glm::dvec4(1.0, 0.0, 0.0, 0.0),
@@ -160,6 +169,21 @@ struct renderer::state {
             }
         });
         return chosen;
+    }
+
+    /// Turns the one map there is, and crops it again.
+    void align(const method& how, const warp_options& options, const ws::frustum<double>& camera,
+               const shadow_memory& shadows, light_memory& memory, map_resources& maps,
+               light_maps& chosen) {
+        const std::vector<std::uint32_t> counts =
+            warps.importance(maps, 0, options, camera, shadows);
+        gpu.timed_pass("align", [&] {
+            chosen.angle = turn_to_importance(gpu, 0, counts, maps.warps.front().counts.width(),
+                                              chosen.angle, memory.turn);
+        });
+        if (how.desired_view) {
+            gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, 0); });
+        }
     }
 
     void draw_warped(const method& how, const view_request& request, map_resources& maps,

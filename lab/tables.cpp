@@ -196,11 +196,10 @@ void table_passes::build_lines(map_resources& maps, std::size_t index, const war
     });
 }
 
-void table_passes::build(map_resources& maps, std::size_t index, const warp_options& options,
-                         const ws::frustum<double>& camera, const shadow_memory& before,
-                         bool keep_counts) {
+void table_passes::prepare(map_resources& maps, std::size_t index, const warp_options& options,
+                           const ws::frustum<double>& camera, const shadow_memory& before) {
     gpu_.select_map(index);
-    map_resources::tables& warp = maps.warps[index];
+    const int cells = maps.warps[index].counts.width();
     const splat_programs& splats = programs(options);
     const double nearest =
         std::max(camera.volume.near_distance, nearest_share * camera.volume.far_distance);
@@ -215,7 +214,7 @@ void table_passes::build(map_resources& maps, std::size_t index, const warp_opti
         program->set("functions.alpha", options.functions.alpha);
         program->set("functions.beta", options.functions.beta);
         program->set("functions.least_cosine", options.functions.least_cosine);
-        program->set("steps", steps(options, warp.counts.width()));
+        program->set("steps", steps(options, cells));
         const glm::dvec3 forward = glm::normalize(camera.forward);
         program->set("view_depth", glm::vec4(glm::dvec4(forward, -glm::dot(forward, camera.eye))));
         program->set("eye", glm::vec3(camera.eye));
@@ -227,6 +226,25 @@ void table_passes::build(map_resources& maps, std::size_t index, const warp_opti
     if (looks_from_the_light(options)) {
         gpu_.timed_pass("light image", [&] { look_from_the_light(index, options.functions.edge); });
     }
+}
+
+std::vector<std::uint32_t> table_passes::importance(map_resources& maps, std::size_t index,
+                                                    const warp_options& options,
+                                                    const ws::frustum<double>& camera,
+                                                    const shadow_memory& before) {
+    prepare(maps, index, options, camera, before);
+    std::vector<std::uint32_t> counts;
+    gpu_.timed_pass("align", [&] {
+        splat(maps, index, options, false);
+        counts = maps.warps[index].counts.read<std::uint32_t>();
+    });
+    return counts;
+}
+
+void table_passes::build(map_resources& maps, std::size_t index, const warp_options& options,
+                         const ws::frustum<double>& camera, const shadow_memory& before,
+                         bool keep_counts) {
+    prepare(maps, index, options, camera, before);
     if (options.rectilinear) {
         build_lines(maps, index, options, keep_counts);
         passes::bind_tables(maps, index);

@@ -1,6 +1,7 @@
 // Builds the warp tables of a map on the device: importance, and the functions of both axes.
 #pragma once
 
+#include "lab/axis_passes.hpp"
 #include "lab/passes.hpp"
 #include "lab/warp_options.hpp"
 
@@ -33,6 +34,13 @@ class table_passes {
                const warpshadow::frustum<double>& camera, const shadow_memory& before,
                bool keep_counts);
 
+    /// Importance of one map as the first axis sees it, row by row.
+    /// @param before as of `build`
+    std::vector<std::uint32_t> importance(map_resources& maps, std::size_t index,
+                                          const warp_options& options,
+                                          const warpshadow::frustum<double>& camera,
+                                          const shadow_memory& before);
+
     /// Keeps the shadows that were tested last.
     void remember(shadow_memory& memory, const warpshadow::frustum<double>& camera);
     /// Keeps shadows of the caller's, one per pixel.
@@ -43,6 +51,8 @@ class table_passes {
     struct splat_programs {
         gl::program rows, columns;
     };
+    void prepare(map_resources& maps, std::size_t index, const warp_options& options,
+                 const warpshadow::frustum<double>& camera, const shadow_memory& before);
     void look_from_the_light(std::size_t index, bool edges);
     void splat(map_resources& maps, std::size_t index, const warp_options& options, bool columns);
     void build_axis(map_resources& maps, std::size_t index, const warp_options& options,
@@ -52,11 +62,12 @@ class table_passes {
     splat_programs& programs(const warp_options& options);
     [[nodiscard]] std::uint64_t sample_count(const warp_options& options) const;
     [[nodiscard]] float steps(const warp_options& options, int cells) const;
-    [[nodiscard]] float power_steps(const warp_options& options, int cells) const;
+    [[nodiscard]] std::uint64_t most_counts(const warp_options& options) const;
 
     passes& gpu_;
     std::map<std::vector<std::string>, splat_programs> splats_;
-    gl::program weigh_cells_, sum_columns_, build_axis_, build_power_, mark_edges_, build_line_;
+    axis_passes axes_;
+    gl::program weigh_cells_, mark_edges_, build_line_;
     std::map<std::string, gl::program> collapse_;
     std::optional<map_resources> seen_by_light_; ///< depth image of forward and hybrid analysis
     gl::texture light_edges_;

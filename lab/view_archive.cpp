@@ -67,7 +67,8 @@ json pack(const run_record& run) {
         packed["passes"].push_back({pass.pass, pass.ms});
     }
     if (r.texels) {
-        packed["texels"] = {pack(r.texels->on_receivers), pack(r.texels->facing)};
+        packed["texels"] = {pack(r.texels->on_receivers), pack(r.texels->facing),
+                            r.texels->finest.x, r.texels->finest.y};
     }
     return packed;
 }
@@ -104,7 +105,10 @@ run_record unpack_run(const json& packed) {
         r.passes.push_back({pass.at(0), pass.at(1)});
     }
     if (packed.contains("texels")) {
-        r.texels = {unpack_metric(packed["texels"].at(0)), unpack_metric(packed["texels"].at(1))};
+        const json& texels = packed["texels"];
+        r.texels = {unpack_metric(texels.at(0)),
+                    unpack_metric(texels.at(1)),
+                    {texels.at(2).get<double>(), texels.at(3).get<double>()}};
     }
     return run;
 }

@@ -53,6 +53,19 @@ ws::cell_rule rule_of(const std::string& text, const char* option) {
     throw bad_input(std::string(option) + " wants sum or max, not '" + text + "'");
 }
 
+ws::window_shape shape_of(const std::string& text) {
+    if (text == "box") {
+        return ws::window_shape::box;
+    }
+    if (text == "tent") {
+        return ws::window_shape::tent;
+    }
+    if (text == "gaussian") {
+        return ws::window_shape::gaussian;
+    }
+    throw bad_input("--smooth wants box, tent or gaussian, not '" + text + "'");
+}
+
 /// The functions that are named; those that are not are off.
 void take_importance(const std::vector<std::string>& given, warp_wishes& wishes) {
     wishes.distance = wishes.edge = wishes.normal = wishes.add = false;
@@ -95,8 +108,19 @@ void add_warp_arguments(CLI::App& app, warp_arguments& given) {
         "Most cells of a table along a side, no more than the map has texels (128)");
     add("--window", given.window,
         "Smoothing across functions, as a share of their number, 0 to 2 (0.7)");
+    add("--smooth", given.smooth,
+        "Weights of that window: box, tent (a box twice) or gaussian (three times), the latter two "
+        "and three times as wide (box)");
     add("--floor", given.floor, "Least density of texels, as a share of the mean, 0 to 1");
+    add("--shear", given.shear,
+        "Limit of what a function changes from row to row, as a multiple of its slope, 0 or more; "
+        "notw is mixed with its mean functions until it keeps it (none)");
     add("--order", given.order, "Axis that is warped first: u or v (u)");
+    app.add_flag(
+           "--align", given.align,
+           "Turn the map of a sun or a spot to the principal axis of its importance (not after "
+           "another warp)")
+        ->group("Methods with warp tables");
     add("--power", given.power,
         "Power of the importance of a row's window, or of a line, above 0 to 2");
     add("--subset", given.subset,
@@ -122,9 +146,13 @@ warp_wishes warp_wishes_of(const warp_arguments& given) {
     };
     number(wishes.window, given.window, "--window", 0.0f, 2.0f);
     number(wishes.floor, given.floor, "--floor", 0.0f, 1.0f);
+    number(wishes.shear, given.shear, "--shear", 0.0f, 1000.0f);
     number(wishes.power, given.power, "--power", 0.001f, 2.0f);
     number(wishes.width, given.sigma, "--sigma", 0.0f, 1.0f);
     number(wishes.share, given.edge_share, "--edge-share", 0.0f, 1000.0f);
+    if (given.align) {
+        wishes.align = true;
+    }
     if (!given.tables.empty()) {
         wishes.tables = whole_in(given.tables, "--tables", 1, largest_table);
     }
@@ -136,6 +164,9 @@ warp_wishes warp_wishes_of(const warp_arguments& given) {
     }
     if (!given.collapse.empty()) {
         wishes.collapse = rule_of(given.collapse, "--collapse");
+    }
+    if (!given.smooth.empty()) {
+        wishes.shape = shape_of(given.smooth);
     }
     if (!given.order.empty()) {
         if (given.order != "u" && given.order != "v") {

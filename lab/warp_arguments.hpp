@@ -17,6 +17,7 @@ struct warp_arguments {
     std::vector<std::string> importance;
     std::string tables, window, smooth, floor, shear, order, power, subset, cells, collapse, sigma,
         edge_share;
+    bool align = false;
 };
 
 /// Adds the options to a command line that outlives neither.

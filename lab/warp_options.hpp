@@ -37,8 +37,9 @@ struct warp_options {
     warpshadow::cell_rule collapse = warpshadow::cell_rule::sum; ///< of rectilinear tables
     float width = 0.0f; ///< of their Gaussian, standard deviation as a share of the cells
     warpshadow::build_options<float> build = {};
-    int tables = 128; ///< most cells along a side; no more than the map has texels
-    int every = 1;    ///< one view sample of each block of so many squared counts
+    int tables = 128;   ///< most cells along a side; no more than the map has texels
+    int every = 1;      ///< one view sample of each block of so many squared counts
+    bool align = false; ///< the map is turned to the principal axis of its importance
 };
 
 /// What the command line says about all methods with tables.
@@ -47,7 +48,7 @@ struct warp_wishes {
     std::optional<warpshadow::cell_rule> cells, collapse;
     std::optional<float> window, floor, width, share, power, shear;
     std::optional<warpshadow::window_shape> shape;
-    std::optional<bool> v_first;
+    std::optional<bool> v_first, align;
     std::optional<int> tables, every;
 
     /// The options of a method with these in their place.
@@ -69,6 +70,7 @@ struct warp_wishes {
         take(options.power, power);
         take(options.tables, tables);
         take(options.every, every);
+        take(options.align, align);
         return options;
     }
 };

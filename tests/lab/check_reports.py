@@ -252,8 +252,17 @@ def check_tables():
     level = report("level", *arguments, "--methods", "dv,notw,rtw-backward", "--floor", "1")
     level = {r["method"]: r["wrong_pixel_ratio"] for r in level["runs"]}
     assert abs(level["notw"] - level["dv"]) < 0.01 and abs(level["rtw-backward"] - level["dv"]) < 0.01
+    turned = report("turned", *arguments, "--methods", "dv,fitted-notw," + methods, "--align")
+    for entry in turned["runs"]:
+        assert entry["pass_ms"].get("align", -1) >= 0 or entry["method"] in ("dv", "fitted-notw")
+        assert (entry["angle_degrees"] == 0) == (entry["method"] in ("dv", "fitted-notw")), entry
     coarse = report("coarse", *arguments, "--methods", "notw", "--tables", "8")
     assert coarse["runs"][0]["bytes"] < usual["runs"][0]["bytes"]
+    for option, value in (("--smooth", "tent"), ("--smooth", "gaussian"), ("--shear", "0.5")):
+        other = report("rows", *arguments, "--methods", "notw,rtw-backward", option, value)
+        other = {r["method"]: r["wrong_pixel_ratio"] for r in other["runs"]}
+        assert other["notw"] != wrong["notw"]
+        assert other["rtw-backward"] == wrong["rtw-backward"], "one function has no neighbours"
     path = report("edges", *arguments, "--methods", "notw-edges", "--path", "yaw", "--frames", "3")
     assert [p["method"] for p in path["paths"]] == ["notw-edges"]
 
@@ -462,7 +471,9 @@ def check_help():
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
                    "--view", "--repeat", "--bias", "--importance", "--tables", "--window", "--floor",
-                   "--order", "--power", "--subset", "--cells", "--collapse", "--sigma", "--filter", "--preset", "--sweep", "--path", "--frames", "--seed", "--out", "Examples:"):
+                   "--smooth", "--shear", "--align", "--order", "--power", "--subset", "--cells",
+                   "--collapse", "--sigma", "--filter", "--preset", "--sweep", "--path", "--frames",
+                   "--seed", "--out", "Examples:"):
         assert option in done.stdout, option
     listed = run("--list-scenes")
     assert listed.returncode == 0 and listed.stderr == ""
