@@ -3,6 +3,8 @@
 //
 // Run with --benchmark_enable_random_interleaving=true --benchmark_repetitions=7 and compare the
 // medians within one run.
+#include "warp_inputs.hpp"
+
 #include <warpshadow/unwarp_guide.hpp>
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
@@ -29,28 +31,11 @@ namespace {
 
 // Inputs -----------------------------------------------------------------------------------------
 
-/// Counts of a view that looks along the map: dense near the eye, some objects, empty corners.
 const std::vector<std::uint32_t>& counts_of(int size) {
     static std::map<int, std::vector<std::uint32_t>> made;
     std::vector<std::uint32_t>& counts = made[size];
     if (counts.empty()) {
-        const auto w = static_cast<std::size_t>(size);
-        counts.resize(w * w);
-        std::mt19937 random(11);
-        std::uniform_real_distribution<double> unit(0.0, 1.0);
-        for (std::size_t i = 0; i < w * w; ++i) {
-            double u = unit(random);
-            double v = unit(random);
-            if (i % 10 < 6) {
-                const double depth = 0.02 / (0.02 + 0.98 * v);
-                u = 0.5 + (u - 0.5) * (0.05 + 0.9 * depth);
-                v = depth;
-            } else if (i % 10 < 9) {
-                u = 0.3 + 0.05 * static_cast<double>(i % 10 - 6) + 0.02 * (u - 0.5);
-                v = 0.2 + 0.2 * static_cast<double>(i % 10 - 6) + 0.03 * (v - 0.5);
-            }
-            ++counts[static_cast<std::size_t>(v * size) * w + static_cast<std::size_t>(u * size)];
-        }
+        counts = warp_inputs::view_counts(size);
     }
     return counts;
 }
@@ -64,11 +49,7 @@ struct built {
     explicit built(int size) : rows(nodes_of(size)), columns(nodes_of(size)), cells(size) {
         build(view_of(size), rows);
         // the second axis of a transposed view: as uneven as a real one
-        std::vector<std::uint32_t> turned(counts_of(size).size());
-        const auto w = static_cast<std::size_t>(size);
-        for (std::size_t i = 0; i < turned.size(); ++i) {
-            turned[i] = counts_of(size)[i % w * w + i / w];
-        }
+        const std::vector<std::uint32_t> turned = warp_inputs::turned(counts_of(size), size);
         build({turned, size, size}, columns);
         row_cells.resize(ws::guide_size(size, size));
         column_cells.resize(row_cells.size());
@@ -163,48 +144,14 @@ void build_map(benchmark::State& state, ws::build_options<float> options) {
     state.SetItemsProcessed(state.iterations() * size * size);
 }
 
-/// The published way: a function per row, then the weighted mean of those in the window.
+/// The published way.
 void build_plain(benchmark::State& state, int radius) {
     const auto size = static_cast<int>(state.range(0));
     const std::vector<std::uint32_t>& counts = counts_of(size);
-    const auto w = static_cast<std::size_t>(size);
-    std::vector<float> functions(w * w);
-    std::vector<float> weights(w);
-    std::vector<float> sums(w);
+    warp_inputs::plain_builder builder(size);
     std::vector<float> nodes = built::nodes_of(size);
     for (auto _ : state) {
-        for (std::size_t y = 0; y < w; ++y) {
-            float sum = 0.0f;
-            for (std::size_t x = 0; x < w; ++x) {
-                sum += static_cast<float>(counts[y * w + x]);
-                functions[y * w + x] = sum;
-            }
-            weights[y] = sum;
-        }
-        std::fill(sums.begin(), sums.end(), 0.0f);
-        float weight = 0.0f;
-        const auto add = [&](int row, float sign) {
-            if (row >= 0 && row < size) {
-                const auto y = static_cast<std::size_t>(row);
-                weight += sign * weights[y];
-                for (std::size_t x = 0; x < w; ++x) {
-                    sums[x] += sign * functions[y * w + x];
-                }
-            }
-        };
-        for (int row = 0; row < radius; ++row) {
-            add(row, 1.0f);
-        }
-        for (int row = 0; row < size; ++row) {
-            add(row + radius, 1.0f);
-            add(row - radius - 1, -1.0f);
-            float* const out = nodes.data() + static_cast<std::size_t>(row) * (w + 1);
-            out[0] = 0.0f;
-            for (std::size_t x = 0; x < w; ++x) {
-                const float uniform = static_cast<float>(x + 1) / static_cast<float>(w);
-                out[x + 1] = 0.3f * uniform + 0.7f * (weight > 0.0f ? sums[x] / weight : uniform);
-            }
-        }
+        builder.build(counts, radius, 0.3f, nodes);
         benchmark::ClobberMemory();
     }
     state.SetItemsProcessed(state.iterations() * size * size);

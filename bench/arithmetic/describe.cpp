@@ -1,0 +1,73 @@
+#include "describe.hpp"
+
+#include <vector>
+
+namespace arithmetic {
+
+std::vector<kernel_description> describe() {
+    return {
+        {"warp",
+         "warp of a point by two tables of 512 functions of 512 cells",
+         "texels",
+         "point",
+         false,
+         {{"even", "importance 0 to 9 per cell, window a half, floor 1/4"},
+          {"view", "importance of a ground and three objects, window a half, floor 1/4"},
+          {"sheared", "neighbouring rows pull to opposite sides, no window, floor 1/64"}}},
+        {"unwarp",
+         "its inverse",
+         "texels",
+         "point",
+         false,
+         {{"even", "the same tables, points anywhere in the warped map"},
+          {"view", "the same"},
+          {"sheared", "the same"}}},
+        {"orientation",
+         "side of a line on which a point lies, coordinates in float",
+         "",
+         "triple",
+         true,
+         {{"random", "three points of the unit square"},
+          {"near a line", "the third on the line of the others, rounded"},
+          {"near a line, all scales", "the same, up to 1000, distances down to 1e-12 of that"},
+          {"on a line", "multiples of a short vector: all exactly zero"}}},
+        {"orientation of doubles",
+         "the same, coordinates in double",
+         "",
+         "triple",
+         true,
+         {{"random", "as for float"},
+          {"near a line", "as for float, rounded to double"},
+          {"near a line, all scales", "as for float, rounded to double"},
+          {"on a line", "as for float"}}},
+        {"hull",
+         "convex hull of 3 to 24 points; wrong if a vertex is missing or one too many",
+         "",
+         "set",
+         true,
+         {{"random", "in a sheared square"},
+          {"near a line", "a few ulps off a line"},
+          {"rectangles", "corners and sides of turned rectangles, moved by up to two ulps"},
+          {"far off", "100 wide, 1e6 from the origin"}}},
+        {"rectangle",
+         "smallest rectangle around the same sets: by how much it is too large, or leaves a point "
+         "outside, in a map as wide as the set",
+         "texels",
+         "set",
+         false,
+         {{"random", "the same sets"},
+          {"near a line", "the same"},
+          {"rectangles", "the same"},
+          {"far off", "the same"}}},
+        {"table build",
+         "512 functions of 512 cells from counts, a window of 41 rows",
+         "texels",
+         "cell",
+         false,
+         {{"view", "importance of a view, floor 1/4"},
+          {"heavy cells", "one cell of 2^25 among ones in every row, floor 1/64"},
+          {"full counters", "every other counter at 2^32 - 1, floor 1/64"}}},
+    };
+}
+
+} // namespace arithmetic
