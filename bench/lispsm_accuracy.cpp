@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -17,12 +18,11 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace {
 
-using camera_test::exact;
 using camera_test::real;
-using camera_test::real3;
 using lispsm_test::configuration;
 using lispsm_test::oracle;
 using lispsm_test::scene;
@@ -73,30 +73,15 @@ class textbook_map {
 
 /// Error of the textbook along its axis, in texels, against the same formula in 100 digits.
 double textbook_error(const scene<float>& s) {
-    using namespace camera_test;
-    const real3 light = unit(exact(s.direction));
-    const real3 view = unit(exact(s.camera.forward));
-    const real sine = length(cross(view, light));
-    if (sine == 0) {
+    const std::vector<real> truth = lispsm_test::textbook_positions<float>(s, s.body);
+    if (truth.empty()) {
         return std::numeric_limits<double>::quiet_NaN(); // the textbook has no answer
     }
-    const real3 axis = unit(cross(cross(light, view), light));
-    real first = dot(axis, exact(s.body[0]));
-    real last = first;
-    real z0 = dot(view, exact(s.body[0]));
-    for (const glm::vec<3, float>& p : s.body) {
-        first = std::min(first, dot(axis, exact(p)));
-        last = std::max(last, dot(axis, exact(p)));
-        z0 = std::min(z0, dot(view, exact(p)));
-    }
-    const real d = last - first;
-    const real n = (z0 + sqrt(z0 * (z0 + d * sine))) / sine;
     const textbook_map map(s);
     double worst = 0.0;
-    for (const glm::vec<3, float>& p : s.body) {
-        const real t = dot(axis, exact(p)) - first;
-        const real truth = (n + d) * t / (d * (n + t));
-        const double error = std::abs(as_double(real(map.along(p)) - truth)) * map_size;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const double error =
+            std::abs(camera_test::as_double(real(map.along(s.body[i]) - truth[i]))) * map_size;
         if (!std::isfinite(error)) {
             return error;
         }

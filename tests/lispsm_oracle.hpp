@@ -215,6 +215,35 @@ template <typename T> scene<T> make_scene(const configuration& c, int points_per
     return s;
 }
 
+/// Positions of points along the warp's axis, 0 to 1 over the body, without a fade: n_opt of Wimmer
+/// et al. 2004. They do not depend on how the map is turned; none if light and view are parallel.
+template <typename T>
+std::vector<real> textbook_positions(const scene<T>& s, std::span<const glm::vec<3, T>> points) {
+    const real3 light = unit(exact(s.direction));
+    const real3 view = unit(exact(s.camera.forward));
+    const real sine = camera_test::length(cross(view, light));
+    std::vector<real> positions;
+    if (sine == 0) {
+        return positions;
+    }
+    const real3 axis = unit(cross(cross(light, view), light));
+    real first = dot(axis, exact(s.body[0]));
+    real last = first;
+    real z0 = dot(view, exact(s.body[0]));
+    for (const glm::vec<3, T>& p : s.body) {
+        first = std::min(first, dot(axis, exact(p)));
+        last = std::max(last, dot(axis, exact(p)));
+        z0 = std::min(z0, dot(view, exact(p)));
+    }
+    const real d = last - first;
+    const real n = (z0 + sqrt(z0 * (z0 + d * sine))) / sine;
+    for (const glm::vec<3, T>& p : points) {
+        const real t = dot(axis, exact(p)) - first;
+        positions.push_back((n + d) * t / (d * (n + t)));
+    }
+    return positions;
+}
+
 /// Largest distance, in texels of a map of `size`, between where the matrix puts the points in
 /// arithmetic of T and where they belong.
 template <typename T>

@@ -12,6 +12,8 @@ void add_kernels(entries& to) {
     add_warp(to);
     add_table_build(to);
     add_planar(to);
+    add_light(to);
+    add_fragments(to);
 }
 
 } // namespace arithmetic::ARITHMETIC_BUILD

@@ -22,6 +22,11 @@ inline double off(double result, const wide& truth) {
     return (result - truth.hi) - truth.lo;
 }
 
+/// The same in ulps of float at the truth, whatever the type of the result.
+inline double float_ulps(double result, const wide& truth) {
+    return 0x1p23 * off(result, truth) / truth.hi;
+}
+
 struct wide2 {
     wide x, y;
 };
