@@ -42,13 +42,13 @@ int size_of_maps(const method& how, int map_size) {
     return std::max(1, static_cast<int>(std::lround(map_size / std::sqrt(how.partitions))));
 }
 
-map_resources resources(const method& how, const view_request& request, std::size_t maps) {
-    const warp_options options = request.tables.over(how.tables);
 /// Maps that a method draws: as many as were chosen, unless its partitions share what was.
 std::size_t count_of_maps(const method& how, const light_maps& chosen) {
     return std::max(chosen.maps.size(), static_cast<std::size_t>(how.partitions));
 }
 
+map_resources resources(const method& how, const view_request& request, std::size_t maps) {
+    const warp_options options = request.tables.over(how.tables);
     const int size = size_of_maps(how, request.map_size);
     const int cells = how.warp ? std::min(options.tables, size) : 0;
     return {size, maps, cells, options.rectilinear ? 1 : cells};
@@ -95,12 +95,12 @@ struct renderer::state {
         if (how.base == map_base::stable) {
             return stable_maps(world, camera, request.light, request.map_size);
         }
-        return how.base == map_base::lispsm
-                   ? lispsm_maps(world, camera, request.light)
         if (how.base == map_base::cascades) {
             return cascade_maps(world, camera, request.light, how.partitions,
                                 size_of_maps(how, request.map_size));
         }
+        return how.base == map_base::lispsm
+                   ? lispsm_maps(world, camera, request.light)
                    : minimal_maps(world, camera, request.light, request.map_size, memory);
     }
 
