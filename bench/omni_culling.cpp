@@ -5,6 +5,7 @@
 // those of tests/frustum_pairs.hpp, "random" and "view and cube face"; each benchmark cycles
 // through the pairs that meet (hit) or that do not (miss), decided by the library in double.
 #include "frustum_pairs.hpp"
+#include "scalar_culling.hpp"
 
 #include <warpshadow/casters.hpp>
 #include <warpshadow/cube.hpp>
@@ -32,70 +33,11 @@ using namespace warpshadow;
 
 constexpr std::size_t set_size = 1024;
 
-/// Points and edges against planes as one would write it: King and Newhall 2004, one thing after
-/// the other, in double, without rounding bounds. Corners and planes are prepared.
-struct scalar_frustum {
-    std::array<glm::dvec3, 8> corners;
-    std::array<glm::dvec4, 6> planes;
-};
+using scalar_frustum = scalar_culling::prepared<double>;
+using scalar_culling::scalar_intersects;
 
 template <typename T> scalar_frustum make_scalar(const frustum<T>& f, const glm::dvec3& origin) {
-    const frustum<double> wide{glm::dvec3(f.eye), glm::dvec3(f.right), glm::dvec3(f.up),
-                               glm::dvec3(f.forward), detail::convert<double>(f.volume)};
-    const glm::dvec3 offset = wide.eye - origin;
-    scalar_frustum s;
-    const auto corners = frustum_corners(wide);
-    const auto planes = frustum_planes(wide);
-    for (std::size_t i = 0; i < 8; ++i) {
-        s.corners[i] = glm::dvec3(corners[i]) + offset;
-    }
-    for (std::size_t i = 0; i < 6; ++i) {
-        const glm::dvec3 n(planes[i]);
-        s.planes[i] = glm::dvec4(n, planes[i].w - glm::dot(n, offset));
-    }
-    return s;
-}
-
-bool point_or_edge_inside(const scalar_frustum& a, const scalar_frustum& b) {
-    for (const glm::dvec3& p : b.corners) {
-        bool inside = true;
-        for (const glm::dvec4& plane : a.planes) {
-            if (glm::dot(glm::dvec3(plane), p) + plane.w < 0.0) {
-                inside = false;
-                break;
-            }
-        }
-        if (inside) {
-            return true;
-        }
-    }
-    for (const auto& edge : detail::corner_pairs) {
-        const glm::dvec3& p = b.corners[edge[0]];
-        const glm::dvec3& q = b.corners[edge[1]];
-        double enter = 0.0;
-        double leave = 1.0;
-        for (const glm::dvec4& plane : a.planes) {
-            const double s = glm::dot(glm::dvec3(plane), p) + plane.w;
-            const double t = glm::dot(glm::dvec3(plane), q) + plane.w;
-            if (s < 0.0 && t < 0.0) {
-                enter = 2.0;
-                break;
-            }
-            if (s < 0.0) {
-                enter = enter > s / (s - t) ? enter : s / (s - t);
-            } else if (t < 0.0) {
-                leave = leave < s / (s - t) ? leave : s / (s - t);
-            }
-        }
-        if (enter <= leave) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool scalar_intersects(const scalar_frustum& a, const scalar_frustum& b) {
-    return point_or_edge_inside(a, b) || point_or_edge_inside(b, a);
+    return scalar_culling::prepare<double>(f, origin);
 }
 
 /// A pair in the form that each library wants it in.

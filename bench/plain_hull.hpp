@@ -22,9 +22,8 @@ template <typename T>
 void monotone_chain(const std::vector<glm::vec<2, T>>& points, std::vector<glm::vec<2, T>>& sorted,
                     std::vector<glm::vec<2, T>>& hull) {
     sorted = points;
-    std::sort(sorted.begin(), sorted.end(), [](const auto& p, const auto& q) {
-        return p.x < q.x || (p.x == q.x && p.y < q.y);
-    });
+    std::sort(sorted.begin(), sorted.end(),
+              [](const auto& p, const auto& q) { return p.x < q.x || (p.x == q.x && p.y < q.y); });
     hull.clear();
     const auto extend = [&hull](const glm::vec<2, T>& p, std::size_t start) {
         while (hull.size() >= start + 2 && !(turn(hull[hull.size() - 2], hull.back(), p) > T(0))) {

@@ -84,8 +84,8 @@ class plain_builder {
             out[0] = 0.0f;
             for (std::size_t x = 0; x < w; ++x) {
                 const float uniform = static_cast<float>(x + 1) / static_cast<float>(w);
-                out[x + 1] =
-                    floor * uniform + (1.0f - floor) * (weight > 0.0f ? sums_[x] / weight : uniform);
+                out[x + 1] = floor * uniform +
+                             (1.0f - floor) * (weight > 0.0f ? sums_[x] / weight : uniform);
             }
         }
     }

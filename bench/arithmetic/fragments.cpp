@@ -22,7 +22,8 @@ template <typename T>
 void add_paraboloid(entries& to, const paraboloid_case& in, const std::string& type) {
     using vec2 = glm::vec<2, T>;
     using vec3 = glm::vec<3, T>;
-    const auto own = std::make_shared<std::vector<vec3>>(in.directions.begin(), in.directions.end());
+    const auto own =
+        std::make_shared<std::vector<vec3>>(in.directions.begin(), in.directions.end());
     const auto add = [&](const std::string& variant, auto project) {
         add_each(
             to, "paraboloid", in.envelope, type + variant, own->size(),
@@ -30,7 +31,8 @@ void add_paraboloid(entries& to, const paraboloid_case& in, const std::string& t
             [&in](std::size_t i, const vec2& uv) {
                 const wide2& truth = in.uv[i];
                 const double length = std::hypot(truth.x.hi, truth.y.hi);
-                const double away = std::hypot(off(double(uv.x), truth.x), off(double(uv.y), truth.y));
+                const double away =
+                    std::hypot(off(double(uv.x), truth.x), off(double(uv.y), truth.y));
                 return 0x1p23 * away / length;
             });
     };
@@ -38,8 +40,7 @@ void add_paraboloid(entries& to, const paraboloid_case& in, const std::string& t
         const vec3 d = glm::normalize(p);
         return vec2(d.x, d.y) / (T(1) + d.z);
     });
-    add(", xy / (|p| + z)",
-        [](const vec3& p) { return vec2(p.x, p.y) / (glm::length(p) + p.z); });
+    add(", xy / (|p| + z)", [](const vec3& p) { return vec2(p.x, p.y) / (glm::length(p) + p.z); });
     add(", `paraboloid_uv`", [](const vec3& p) { return ws::paraboloid_uv(p, 0); });
 }
 

@@ -21,7 +21,6 @@
 
 namespace arithmetic {
 
-
 // Warp tables ------------------------------------------------------------------------------------
 
 /// Importance of both axes, and points with their exact images under the map that it stands for:
@@ -46,8 +45,8 @@ struct build_case {
     double floor;
     int radius;
     std::vector<std::uint32_t> counts;
-    std::vector<int> rows;    ///< functions that are compared
-    std::vector<wide> nodes;  ///< cells + 1 of each of them
+    std::vector<int> rows;   ///< functions that are compared
+    std::vector<wide> nodes; ///< cells + 1 of each of them
 };
 const std::vector<build_case>& build_cases();
 
@@ -81,7 +80,7 @@ struct near_case {
     std::string envelope;
     std::vector<glm::vec3> light, view; ///< unit vectors, rounded
     std::vector<float> z0, extent;
-    std::vector<wide> inverse_near; ///< 1 / n
+    std::vector<wide> inverse_near; ///< 1 / n, the sine being |view × light| of these numbers
 };
 const std::vector<near_case>& near_cases();
 
@@ -91,7 +90,7 @@ template <typename T> struct light_scene {
     std::vector<glm::vec<3, T>> body;   ///< relative to the eye
     std::vector<glm::vec<3, T>> points; ///< body and points inside it, to be put on the map
     std::vector<wide2> ndc;             ///< where they belong
-    std::vector<wide> along; ///< and along the axis of the warp, 0 to 1 over the body
+    std::vector<wide> along;            ///< and along the axis of the warp, 0 to 1 over the body
 };
 template <typename T> struct light_case {
     std::string envelope;
@@ -117,16 +116,21 @@ struct face_case {
 };
 const std::vector<face_case>& face_cases();
 
-struct body_case {
+/// The axes of a view are orthonormal to a rounding of T, hence one set for each type.
+template <typename T> struct body_case {
     std::string envelope;
-    std::vector<warpshadow::frustum<float>> views; ///< eye at the origin
-    std::vector<warpshadow::box3<float>> boxes;
+    std::vector<warpshadow::frustum<T>> views; ///< eye at the origin
+    std::vector<warpshadow::box3<T>> boxes;
 };
-const std::vector<body_case>& body_cases();
+const std::vector<body_case<float>>& body_cases();
+const std::vector<body_case<double>>& wide_body_cases();
 
 /// Largest distance from a vertex of the exact body to the nearest of `vertices`, or the other way
 /// round, in texels of a map as wide as the body.
-double body_error(const body_case& in, std::size_t i, const std::vector<glm::dvec3>& vertices);
+double body_error(const body_case<float>& in, std::size_t i,
+                  const std::vector<glm::dvec3>& vertices);
+double body_error(const body_case<double>& in, std::size_t i,
+                  const std::vector<glm::dvec3>& vertices);
 
 // Fragments --------------------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ void add_kernels(entries& to) {
     add_planar(to);
     add_light(to);
     add_fragments(to);
+    add_volumes(to);
 }
 
 } // namespace arithmetic::ARITHMETIC_BUILD

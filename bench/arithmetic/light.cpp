@@ -54,7 +54,8 @@ template <typename T> void add_near(entries& to, const near_case& in, const std:
         [&in](std::size_t i) { return inverse_near<T, form::dot_2004>(in, i); });
     add(", d / (√(z1/z0) - 1)",
         [&in](std::size_t i) { return inverse_near<T, form::cross_2006>(in, i); });
-    add(", `inverse_n_opt`", [&in](std::size_t i) { return inverse_near<T, form::library>(in, i); });
+    add(", `inverse_n_opt`",
+        [&in](std::size_t i) { return inverse_near<T, form::library>(in, i); });
 }
 
 struct no_fade {
@@ -67,12 +68,14 @@ template <typename T>
 double texels_off(const light_scene<T>& scene, const glm::mat<4, 4, T>& matrix, bool axis_alone) {
     double worst = 0.0;
     for (std::size_t i = 0; i < scene.points.size(); ++i) {
-        const glm::vec<4, T> clip = matrix * glm::vec<4, T>(axis_alone ? scene.camera.eye + scene.points[i] : scene.points[i], T(1));
+        const glm::vec<4, T> clip =
+            matrix *
+            glm::vec<4, T>(axis_alone ? scene.camera.eye + scene.points[i] : scene.points[i], T(1));
         const double x = double(clip.x / clip.w);
         const double y = double(clip.y / clip.w);
-        const double error =
-            axis_alone ? std::abs(off(0.5 * y + 0.5, scene.along[i]))
-                       : 0.5 * std::hypot(off(x, scene.ndc[i].x), off(y, scene.ndc[i].y));
+        const double error = axis_alone
+                                 ? std::abs(off(0.5 * y + 0.5, scene.along[i]))
+                                 : 0.5 * std::hypot(off(x, scene.ndc[i].x), off(y, scene.ndc[i].y));
         if (!std::isfinite(error)) {
             return error;
         }

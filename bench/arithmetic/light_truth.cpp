@@ -32,8 +32,7 @@ std::array<glm::vec3, 2> at_angle(random& r, double gamma) {
             glm::vec3(std::cos(gamma) * frame.forward + std::sin(gamma) * frame.up)};
 }
 
-template <typename T>
-light_scene<T> make_scene(const lispsm_test::configuration& c) {
+template <typename T> light_scene<T> make_scene(const lispsm_test::configuration& c) {
     const lispsm_test::scene<T> s = lispsm_test::make_scene<T>(c);
     light_scene<T> made{s.camera, s.direction, s.body, s.body, {}, {}};
     made.points.insert(made.points.end(), s.points.begin(), s.points.end());
@@ -79,12 +78,11 @@ const std::vector<near_case>& near_cases() {
             for (std::size_t i = 0; i < near_count; ++i) {
                 const auto [view, light] = at_angle(r, r.log_uniform(gamma.lo, gamma.hi));
                 const auto z0 = static_cast<float>(r.log_uniform(0.1, 10.0));
-                const auto d = static_cast<float>(z0 * r.log_uniform(ratio.lo, ratio.hi));
+                const auto d = static_cast<float>(double(z0) * r.log_uniform(ratio.lo, ratio.hi));
                 using namespace camera_test;
                 const real3 v = camera_test::exact(view);
                 const real3 l = camera_test::exact(light);
-                const real sine =
-                    camera_test::length(cross(v, l)) / (camera_test::length(v) * camera_test::length(l));
+                const real sine = camera_test::length(cross(v, l));
                 const real n = (z0 + sqrt(real(z0) * (z0 + d * sine))) / sine;
                 each.view.push_back(view);
                 each.light.push_back(light);

@@ -146,10 +146,9 @@ int main(int argc, char** argv) {
                            {"envelopes", envelopes},
                            {"rows", rows}});
     }
-    const nlohmann::json json = {{"schema", 1},        {"processor", processor()},
-                                 {"compiler", compiler}, {"builds", builds},
-                                 {"rounds", rounds},   {"map", map_size},
-                                 {"kernels", kernels}};
+    const nlohmann::json json = {
+        {"schema", 1},      {"processor", processor()}, {"compiler", compiler}, {"builds", builds},
+        {"rounds", rounds}, {"map", map_size},          {"kernels", kernels}};
     if (argc > 1) {
         std::ofstream(argv[1]) << json.dump(1) << '\n';
     } else {

@@ -38,8 +38,8 @@ inline constexpr double missed = -1.0;
 /// One variant on the inputs of one envelope.
 struct entry {
     std::string kernel, envelope, variant;
-    double calls;                              ///< per round
-    std::function<void()> round;               ///< all inputs once; this is timed
+    double calls;                                ///< per round
+    std::function<void()> round;                 ///< all inputs once; this is timed
     std::function<std::vector<double>()> errors; ///< of the results of the last round, by input
     std::size_t build = 0;                       ///< filled in by `entries::add`
 };

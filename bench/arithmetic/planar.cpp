@@ -21,7 +21,8 @@ namespace arithmetic::ARITHMETIC_BUILD {
 
 namespace {
 
-template <typename T> int plain_sign(const glm::vec<2, T>& a, const glm::vec<2, T>& b, const glm::vec<2, T>& c) {
+template <typename T>
+int plain_sign(const glm::vec<2, T>& a, const glm::vec<2, T>& b, const glm::vec<2, T>& c) {
     const T area = plain_hull::turn(a, b, c);
     return area > T(0) ? 1 : area < T(0) ? -1 : 0;
 }
@@ -40,7 +41,8 @@ void add_orientation(entries& to, const std::string& kernel, const orientation_c
     };
     using vec2 = glm::vec<2, T>;
     if constexpr (sizeof(T) == sizeof(float)) {
-        add("float", [](const vec2& a, const vec2& b, const vec2& c) { return plain_sign(a, b, c); });
+        add("float",
+            [](const vec2& a, const vec2& b, const vec2& c) { return plain_sign(a, b, c); });
     }
     add("double", [](const vec2& a, const vec2& b, const vec2& c) {
         return plain_sign(glm::dvec2(a), glm::dvec2(b), glm::dvec2(c));
@@ -67,8 +69,7 @@ template <typename T> struct sets {
     std::size_t size = 0;
 };
 
-template <typename T>
-void add_hull(entries& to, const planar_case& in, const std::string& type) {
+template <typename T> void add_hull(entries& to, const planar_case& in, const std::string& type) {
     using vec2 = glm::vec<2, T>;
     const auto own = std::make_shared<sets<T>>(in);
     /// @param make writes the hull of a set into memory of its size and returns the vertices

@@ -1,4 +1,5 @@
-// Building the functions of one axis: sums over windows and along rows, and what they are stored as.
+// Building the functions of one axis: sums over windows and along rows, and what they are stored
+// as.
 #include "kernels.hpp"
 #include "warp_inputs.hpp"
 
@@ -65,11 +66,10 @@ void add_table_build(entries& to) {
         const auto w = static_cast<std::size_t>(in.cells);
         const auto nodes = std::make_shared<std::vector<float>>(w * (w + 1));
         const auto plain = std::make_shared<warp_inputs::plain_builder>(in.cells);
-        to.add({"table build", in.envelope, "plain: sums in float", double(w * w),
-                [&in, nodes, plain] {
-                    plain->build(in.counts, in.radius, float(in.floor), *nodes);
-                },
-                [&in, nodes] { return errors_of(in, *nodes); }});
+        to.add(
+            {"table build", in.envelope, "plain: sums in float", double(w * w),
+             [&in, nodes, plain] { plain->build(in.counts, in.radius, float(in.floor), *nodes); },
+             [&in, nodes] { return errors_of(in, *nodes); }});
     }
 }
 

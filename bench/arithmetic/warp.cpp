@@ -24,12 +24,14 @@ namespace {
 template <typename T, typename Node> struct tables {
     explicit tables(const warp_case& from)
         : cells(from.cells), row_nodes(built(from, from.row_counts)),
-          column_nodes(built(from, from.column_counts)), row_guide_cells(ws::guide_size(cells, cells)),
+          column_nodes(built(from, from.column_counts)),
+          row_guide_cells(ws::guide_size(cells, cells)),
           column_guide_cells(row_guide_cells.size()) {
         ws::build_guide(rows(), {row_guide_cells, cells, cells});
         ws::build_guide(columns(), {column_guide_cells, cells, cells});
     }
-    static std::vector<Node> built(const warp_case& from, const std::vector<std::uint32_t>& counts) {
+    static std::vector<Node> built(const warp_case& from,
+                                   const std::vector<std::uint32_t>& counts) {
         ws::build_options<T> options;
         options.floor = T(from.floor);
         options.radius = from.radius;
@@ -61,7 +63,8 @@ void add_points(entries& to, const std::string& kernel, const warp_case& in,
                 const std::vector<wide2>& truth, Each each) {
     const auto own = std::make_shared<std::vector<glm::vec<2, T>>>(points.begin(), points.end());
     add_each(
-        to, kernel, in.envelope, variant, own->size(), [own, each](std::size_t i) { return each((*own)[i]); },
+        to, kernel, in.envelope, variant, own->size(),
+        [own, each](std::size_t i) { return each((*own)[i]); },
         [&truth](std::size_t i, const glm::vec<2, T>& p) { return texels(p, truth[i]); });
 }
 
@@ -86,7 +89,9 @@ void add_batch(entries& to, const std::string& kernel, const warp_case& in,
             }});
 }
 
-template <typename T, typename Node> std::shared_ptr<tables<T, Node>> add_type(entries& to, const warp_case& in, const std::string& type) {
+template <typename T, typename Node>
+std::shared_ptr<tables<T, Node>> add_type(entries& to, const warp_case& in,
+                                          const std::string& type) {
     const auto t = std::make_shared<tables<T, Node>>(in);
     using vec2 = glm::vec<2, T>;
     add_points<T>(to, "warp", in, type, in.points, in.warped,
@@ -100,12 +105,13 @@ template <typename T, typename Node> std::shared_ptr<tables<T, Node>> add_type(e
 }
 
 /// Both, and what there is for many points.
-template <typename T> std::shared_ptr<tables<T, T>> add_batches(entries& to, const warp_case& in, const std::string& type) {
+template <typename T>
+std::shared_ptr<tables<T, T>> add_batches(entries& to, const warp_case& in,
+                                          const std::string& type) {
     const auto t = add_type<T, T>(to, in, type);
-    add_batch<T>(to, "warp", in, type + ", `warp_points`", in.points, in.warped,
-                 [t](auto from, auto results) {
-                     ws::warp_points(t->rows(), t->columns(), from, results);
-                 });
+    add_batch<T>(
+        to, "warp", in, type + ", `warp_points`", in.points, in.warped,
+        [t](auto from, auto results) { ws::warp_points(t->rows(), t->columns(), from, results); });
     add_batch<T>(to, "unwarp", in, type + ", `unwarp_points`", in.images, in.unwarped,
                  [t](auto from, auto results) {
                      ws::unwarp_points(t->rows(), t->columns(), t->row_guide(), t->column_guide(),

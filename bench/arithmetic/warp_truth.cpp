@@ -70,8 +70,16 @@ const std::vector<warp_case>& warp_cases() {
         const std::vector<std::uint32_t> even = even_counts(r);
         cases.push_back({"even", cells, 0.25, cells / 4, even, even, {}, {}, {}, {}});
         const std::vector<std::uint32_t> view = warp_inputs::view_counts(cells);
-        cases.push_back({"view", cells, 0.25, cells / 4, view, warp_inputs::turned(view, cells),
-                         {}, {}, {}, {}});
+        cases.push_back({"view",
+                         cells,
+                         0.25,
+                         cells / 4,
+                         view,
+                         warp_inputs::turned(view, cells),
+                         {},
+                         {},
+                         {},
+                         {}});
         const std::vector<std::uint32_t> opposed = opposed_counts(r);
         cases.push_back({"sheared", cells, 0x1p-6, 0, opposed, opposed, {}, {}, {}, {}});
         for (warp_case& each : cases) {
