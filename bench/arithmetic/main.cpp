@@ -85,8 +85,9 @@ nlohmann::json judged(const std::vector<double>& errors, bool decisions) {
         }
     }
     std::sort(sizes.begin(), sizes.end());
-    // the results that are NaN or infinite are the worst of all
-    const auto at = static_cast<std::size_t>(0.999 * static_cast<double>(errors.size() - 1));
+    // results that are NaN or infinite are the worst of all; of few results it is the largest
+    const auto at =
+        static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(errors.size() - 1)));
     result["p999"] = at < sizes.size() ? rounded(sizes[at]) : nlohmann::json(nullptr);
     result["largest"] = undefined == 0 ? rounded(sizes.back()) : nlohmann::json(nullptr);
     result["undefined"] = undefined;

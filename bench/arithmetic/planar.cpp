@@ -49,6 +49,21 @@ void add_orientation(entries& to, const std::string& kernel, const orientation_c
     });
     add("adaptive, `orient2d`",
         [](const vec2& a, const vec2& b, const vec2& c) { return ws::orient2d(a, b, c); });
+    if constexpr (sizeof(T) == sizeof(float)) {
+        double extent = 0.0;
+        for (const auto& triple : in.triples) {
+            for (const vec2& p : triple) {
+                extent = std::max({extent, std::abs(double(p.x)), std::abs(double(p.y))});
+            }
+        }
+        // coordinates of both signs span twice the largest
+        const double step = ws::snap_step(2.0 * extent);
+        add("on a grid, `orient2d_snapped`", [step](const vec2& a, const vec2& b, const vec2& c) {
+            return ws::orient2d_snapped(ws::snap(glm::dvec2(a), step),
+                                        ws::snap(glm::dvec2(b), step),
+                                        ws::snap(glm::dvec2(c), step));
+        });
+    }
     add("exact alone", [](const vec2& a, const vec2& b, const vec2& c) {
         return ws::detail::orient2d_exact(glm::dvec2(a), glm::dvec2(b), glm::dvec2(c));
     });

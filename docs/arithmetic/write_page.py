@@ -88,6 +88,8 @@ def decided(row, missing_matters):
 def error(kernel, row):
     if kernel["decisions"]:
         return decided(row, True)
+    if row["undefined"] > 0:
+        return f"undefined in {digits(100.0 * row['undefined'] / row['inputs'], 2)} %"
     return size(row["p999"])
 
 
