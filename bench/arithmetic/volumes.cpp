@@ -29,11 +29,11 @@ void add_pairs(entries& to, const pair_case& in) {
                      return found == in.meet[i] ? 0.0 : found ? kept_in_vain : missed;
                  });
     };
-    const auto add_scalar = [&]<typename N>(const std::string& variant, N) {
+    const auto add_scalar = [&]<typename N>(const std::string& variant, N, bool world) {
         using prepared = std::array<scalar_culling::prepared<N>, 2>;
         const auto own = std::make_shared<std::vector<prepared>>();
         for (const auto& [a, b] : in.pairs) {
-            const glm::vec<3, N> origin(a.eye);
+            const auto origin = world ? glm::vec<3, N>(N(0)) : glm::vec<3, N>(a.eye);
             own->push_back(
                 {scalar_culling::prepare(a, origin), scalar_culling::prepare(b, origin)});
         }
@@ -41,8 +41,9 @@ void add_pairs(entries& to, const pair_case& in) {
             return scalar_culling::scalar_intersects((*own)[i][0], (*own)[i][1]);
         });
     };
-    add_scalar("float, no bounds", 0.0f);
-    add_scalar("double, no bounds", 0.0);
+    add_scalar("float, no bounds, world space", 0.0f, true);
+    add_scalar("float, no bounds", 0.0f, false);
+    add_scalar("double, no bounds", 0.0, false);
     const auto volumes = std::make_shared<std::vector<std::array<ws::cull_volume, 2>>>();
     for (const auto& [a, b] : in.pairs) {
         volumes->push_back({ws::make_cull_volume(a), ws::make_cull_volume(b)});

@@ -75,7 +75,7 @@ def scatter(series, variants, x_name, y_name):
     zero_at, endless_at = floor - 8 - 3 * ROW, TOP + 8
     foot = zero_at - ROW if zero else floor - 10
     head = endless_at + 4 * ROW if endless else TOP + 10
-    xs = Axis([x for _, x, _ in points], LEFT + 10, WIDTH - RIGHT - 10)
+    xs = Axis([x for _, x, _ in points], LEFT + 10, WIDTH - RIGHT - 28)
     ys = Axis([y for _, _, y in points], foot, head)
     lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
              'font-family="sans-serif" font-size="12">',
