@@ -7,7 +7,7 @@ namespace arithmetic {
 std::vector<kernel_description> describe() {
     return {
         {"warp",
-         "warp of a point by two tables of 512 functions of 512 cells",
+         "warp of a point by two tables of 512 functions of 512 cells, rows blended",
          "texels",
          "point",
          false,
@@ -69,7 +69,8 @@ std::vector<kernel_description> describe() {
           {"small angle", "0.001 to 0.5 rad"},
           {"light along the view", "1e-6 to 1e-3 rad"}}},
         {"light matrix",
-         "the matrix of LiSPSM without its fade, eight corners; of its points the farthest off",
+         "the matrix of LiSPSM without its fade, eight corners; of its points the farthest off "
+         "(the naive matrix: along the warp's axis alone)",
          "texels",
          "matrix",
          false,
