@@ -28,8 +28,7 @@ std::optional<double> wrong_of(const run_record& run);
 
 /// Runs that no other one beats in wrong pixels without costing more, cheapest first.
 ///
-/// Of equal runs the first stays. Methods without a map count as well: they are exact, and what
-/// they cost bounds what a map may cost.
+/// Of equal runs the first stays.
 /// @param which indices of runs of one view
 std::vector<std::size_t> pareto_front(std::span<const run_record> runs,
                                       std::span<const std::size_t> which, cost of);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -97,7 +98,10 @@ std::string plot_of(const results& all, const std::vector<std::size_t>& runs, co
         all_series.push_back(std::move(each));
     }
     std::vector<std::pair<double, double>> front;
-    for (const std::size_t index : pareto_front(all.runs, runs, of)) {
+    std::vector<std::size_t> with_maps; // what is exact would hide what maps can do
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(with_maps),
+                 [&](std::size_t index) { return all.runs[index].map > 0; });
+    for (const std::size_t index : pareto_front(all.runs, with_maps, of)) {
         front.emplace_back(x_of(cost_of(all.runs[index], of)), 100.0 * *wrong_of(all.runs[index]));
     }
     return scatter_plot(all_series, of == cost::time ? "frame time, ms" : "memory, MiB",

@@ -1,7 +1,7 @@
 // Maps with tables as they are drawn, against an ideal map with a ray per texel.
 //
-// The triangles lie flat at depths of their own below a sun overhead, so a texel tells which of
-// them it holds. How far a map deviates is how far from a texel's centre the ideal map, evaluated
+// The triangles lie flat at heights of their own, so a texel tells by its depth which of them it
+// holds. How far a map deviates is how far from a texel's centre the ideal map, evaluated
 // anywhere, has what the texel holds.
 #include "gl/context.hpp"
 #include "lab/truth.hpp"
@@ -25,7 +25,7 @@ namespace {
 constexpr int size = 192;
 
 /// Flat triangles of all sizes over a ground; neighbours share edges where they come from one fan.
-lab::scene flat_triangles(unsigned seed, int fans) {
+lab::scene flat_triangles(unsigned seed, int fans, const ws::light<double>& light) {
     lab::scene world;
     world.name = "flat";
     std::mt19937 random(seed);
@@ -56,7 +56,7 @@ lab::scene flat_triangles(unsigned seed, int fans) {
     add_fan({5.0f, 5.0f}, 12.0f, 0.0f, 4); // the ground, beyond the map
     world.box = {glm::dvec3(0.0, 0.0, 0.0), glm::dvec3(10.0, 1.0, 10.0)};
     world.cameras.push_back({"0", {5.0, 8.0, 5.0}, {5.0, 0.0, 5.1}, 1.0});
-    world.lights.push_back({"0", ws::sun(glm::dvec3(0.0, -1.0, 0.0))});
+    world.lights.push_back({"0", light});
     return world;
 }
 
@@ -87,8 +87,12 @@ struct drawn_maps {
     std::vector<float> rows = steep_table(0.25, 0.3, 0.06);
     std::vector<float> columns = steep_table(0.7, -0.4, 0.09);
     std::vector<float> ideal;
+    double tolerance; ///< between heights that are the same; the rest is the rounding of depths
 
-    drawn_maps(unsigned seed, int fans) : world(flat_triangles(seed, fans)) {
+    drawn_maps(unsigned seed, int fans,
+               const ws::light<double>& light = ws::sun(glm::dvec3(0.0, -1.0, 0.0)),
+               double same_height = 1e-4)
+        : world(flat_triangles(seed, fans, light)), tolerance(same_height) {
         const lab::light_maps chosen = lab::whole_scene_maps(world, world.lights.front());
         gpu.draw_view(seen, glm::mat4(1.0f), glm::vec3(0.0f)); // sets the state of all passes
         gpu.use(seen, chosen, world.lights.front().light);
@@ -112,10 +116,24 @@ struct drawn_maps {
     double deviation(const std::vector<float>& map, const std::vector<double>& radii) const {
         const ws::table_view<float> row_view{rows, size, size}, column_view{columns, size, size};
         const glm::dmat4 inverse = glm::inverse(glm::dmat4(gpu.matrix_in_use(0)));
+        constexpr double nothing = -1.0; // below the ground
+        const auto place = [&](glm::vec2 q, double depth) {
+            const glm::dvec2 ndc = 2.0 * glm::dvec2(ws::unwarp(row_view, column_view, q)) - 1.0;
+            const glm::dvec4 p = inverse * glm::dvec4(ndc, 2.0 * depth - 1.0, 1.0);
+            return glm::dvec3(p) / p.w;
+        };
         double most = 0.0;
         for (int i = 0; i < size * size; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            if (std::abs(map[at] - ideal[at]) < 1e-4f) {
+            const glm::vec2 centre(static_cast<float>(i % size) + 0.5f,
+                                   static_cast<float>(i / size) + 0.5f);
+            const auto height_of = [&](float depth) {
+                return depth < 1.0f
+                           ? place(centre / static_cast<float>(size), static_cast<double>(depth)).y
+                           : nothing;
+            };
+            const double held = height_of(map[at]);
+            if (std::abs(held - height_of(ideal[at])) < tolerance) {
                 continue;
             }
             double needed = std::numeric_limits<double>::infinity();
@@ -124,22 +142,20 @@ struct drawn_maps {
                 for (int k = 0; k < 128; ++k) {
                     const double angle = 0.049087385 * k;
                     const glm::vec2 q =
-                        (glm::vec2(static_cast<float>(i % size), static_cast<float>(i / size)) +
-                         0.5f +
-                         glm::vec2(static_cast<float>(radius * std::cos(angle)),
-                                   static_cast<float>(radius * std::sin(angle)))) /
+                        (centre + glm::vec2(static_cast<float>(radius * std::cos(angle)),
+                                            static_cast<float>(radius * std::sin(angle)))) /
                         static_cast<float>(size);
-                    const glm::dvec2 ndc =
-                        2.0 * glm::dvec2(ws::unwarp(row_view, column_view, q)) - 1.0;
-                    const glm::dvec4 begin = inverse * glm::dvec4(ndc, -1.0, 1.0);
-                    const glm::dvec4 end = inverse * glm::dvec4(ndc, 1.0, 1.0);
-                    from.emplace_back(glm::dvec3(begin) / begin.w);
-                    to.emplace_back(glm::dvec3(end) / end.w);
+                    from.push_back(place(q, 0.0));
+                    to.push_back(place(q, 1.0));
                 }
                 const std::vector<double> hits = rays.first_hits(from, to);
-                if (std::any_of(hits.begin(), hits.end(), [&](double share) {
-                        return std::abs(std::min(share, 1.0) - static_cast<double>(map[at])) < 1e-4;
-                    })) {
+                bool served = false;
+                for (std::size_t k = 0; k < hits.size(); ++k) {
+                    const double height =
+                        hits[k] < 1.0 ? glm::mix(from[k], to[k], hits[k]).y : nothing;
+                    served = served || std::abs(height - held) < tolerance;
+                }
+                if (served) {
                     needed = radius;
                     break;
                 }
@@ -192,6 +208,22 @@ TEST_CASE("edges cut by the bound are off by no more than it") {
         }
         CHECK(pieces > hulls);
     }
+}
+
+TEST_CASE("J43: triangles that reach behind a spot light are clipped before they are warped") {
+    drawn_maps maps(
+        7, 12, ws::spot_light(glm::dvec3(5.0, 2.5, -1.0), glm::dvec3(5.0, 0.0, 5.0), 1.0), 0.02);
+    const glm::dmat4 light(maps.gpu.matrix_in_use(0));
+    const auto behind = [&](const glm::vec3& p) {
+        return (light * glm::dvec4(glm::dvec3(p), 1.0)).w < 0.0;
+    };
+    // the ground is under every fan, and one of its corners lies behind the light
+    REQUIRE(std::any_of(maps.world.positions.end() - 5, maps.world.positions.end(), behind));
+    REQUIRE(std::count_if(maps.ideal.begin(), maps.ideal.end(), [](float d) { return d < 1.0f; }) >
+            static_cast<std::ptrdiff_t>(maps.ideal.size() / 2));
+    CHECK(maps.deviation(maps.draw({lab::raster_kind::exact, 0.0}), {0.005, 0.01, 0.02}) <= 0.02);
+    CHECK(maps.deviation(maps.draw({lab::raster_kind::bound, 0.5}),
+                         {0.02, 0.15, 0.27, 0.4, 0.52}) <= 0.52);
 }
 
 TEST_CASE("ways to draw maps with tables are read and written alike") {
