@@ -110,9 +110,10 @@ constexpr std::array methods{
 };
 
 constexpr auto names = [] {
-    std::array<std::string_view, methods.size() + 1> result;
+    std::array<std::string_view, methods.size() + 2> result;
     std::transform(methods.begin(), methods.end(), result.begin(),
                    [](const method& each) { return each.name; });
+    result[methods.size()] = "sv";
     result.back() = "raytraced";
     return result;
 }();
@@ -140,12 +141,16 @@ bool drawn_one_by_one(const method& how) {
     return how.base != map_base::all_around || how.warp;
 }
 
+bool has_maps(std::string_view name) {
+    return name != "sv" && name != "raytraced";
+}
+
 bool has_tables(std::string_view name) {
-    return name != "raytraced" && find_method(name).warp;
+    return has_maps(name) && find_method(name).warp;
 }
 
 std::optional<std::string> why_not(std::string_view name, const light_view& light) {
-    if (name == "raytraced") {
+    if (!has_maps(name)) {
         return std::nullopt;
     }
     const method& how = find_method(name);
@@ -170,7 +175,7 @@ std::optional<std::string> why_not(std::string_view name, const light_view& ligh
 
 std::optional<std::string> why_not(std::string_view name, const light_view& light,
                                    const bias_choice& bias) {
-    if (name == "raytraced") {
+    if (!has_maps(name)) {
         return std::nullopt;
     }
     const method& how = find_method(name);

@@ -39,7 +39,10 @@ struct method {
 /// All method names, "raytraced" last.
 std::span<const std::string_view> method_names();
 
-/// The method of a name other than "raytraced"; throws `bad_input` for an unknown one.
+/// Whether a method has shadow maps: all but "sv" (see lab/volumes.hpp) and "raytraced".
+[[nodiscard]] bool has_maps(std::string_view name);
+
+/// The method of a name that `has_maps`; throws `bad_input` for an unknown one.
 const method& find_method(std::string_view name);
 
 /// Whether the maps of a method are fitted to the view: a point light then has maps for what is
@@ -49,7 +52,7 @@ const method& find_method(std::string_view name);
 /// Whether the steps that all kinds of light share draw the maps, and not those of lab/omni.hpp.
 [[nodiscard]] bool drawn_one_by_one(const method& how);
 
-/// Whether a method, "raytraced" included, has maps with tables.
+/// Whether a method, of any name, has maps with tables.
 [[nodiscard]] bool has_tables(std::string_view name);
 
 /// Why the method does not apply to the light, or nothing when it does.

@@ -2,6 +2,7 @@
 
 #include "lab/align.hpp"
 #include "lab/bias_passes.hpp"
+#include "lab/frame_times.hpp"
 #include "lab/light_picture.hpp"
 #include "lab/method_table.hpp"
 #include "lab/metric_passes.hpp"
@@ -9,6 +10,7 @@
 #include "lab/passes.hpp"
 #include "lab/statistics.hpp"
 #include "lab/tables.hpp"
+#include "lab/volumes.hpp"
 #include "lab/warp_pictures.hpp"
 
 #include <algorithm>
@@ -262,18 +264,6 @@ struct renderer::state {
         return view;
     }
 
-    /// Times of as many frames as asked for.
-    std::vector<double> time_frames(const method& how, const view_request& request,
-                                    standing_view& view) {
-        std::vector<double> times;
-        for (int i = 0; i < request.repeat; ++i) {
-            gpu.watch().start();
-            draw(how, request, view, false);
-            times.push_back(gpu.watch().stop());
-        }
-        return times;
-    }
-
     /// Shadow test of the samples in use.
     void test(const method& how, const light_view& light, map_resources& maps,
               const light_maps& chosen) {
@@ -388,11 +378,12 @@ struct renderer::state {
     bias_passes biased{gpu};
     metric_passes metric{gpu};
     table_passes warps{gpu};
+    volume_passes volumes{gpu};
     g_buffer seen, seen_before;
-    std::vector<double> fit_us;     ///< times of the projective fit alone
-    std::vector<double> culling_us; ///< times of sorting objects to the maps of a point light
-    double weakened = 0.0;          ///< share of the identity in the last tables
-    bool remembers = false;
+    std::vector<double> fit_us;        ///< times of the projective fit alone
+    std::vector<double> culling_us;    ///< times of sorting objects to the maps of a point light
+    double weakened = 0.0;             ///< share of the identity in the last tables
+    std::optional<camera_view> before; ///< the camera of `seen_before`
     // kept while a camera moves, so that frames do not begin with allocations
     std::map<std::string, moving_resources, std::less<>> moving;
 };
@@ -438,6 +429,9 @@ g_buffer_samples renderer::samples(const camera_view& camera, const light_view& 
 
 method_result renderer::run(std::string_view name, const view_request& request) {
     state& s = *state_;
+    if (!has_maps(name)) {
+        return s.volumes.run(s.seen, request);
+    }
     const method& how = find_method(name);
     method_result result{};
 
@@ -456,22 +450,13 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     standing_view view = s.prepare(how, request);
     map_resources& maps = view.maps;
     light_maps& chosen = view.chosen;
-    add_times(result, s.time_frames(how, request, view));
-    std::map<std::string, std::vector<double>> times;
-    s.gpu.time_into(&times);
-    for (int i = 0; i < std::min(request.repeat, 3); ++i) {
-        s.draw(how, request, view, false);
-        s.gpu.begin_frame();
-    }
-    s.gpu.time_into(nullptr);
+    time_frames(
+        s.gpu, request.repeat, [&] { s.draw(how, request, view, false); }, result);
     if (how.fitted) {
         result.cpu_setup_us.emplace_back("fit", median(s.fit_us));
     }
     gl::check("shadow methods");
 
-    for (const std::string& pass : s.gpu.timed()) {
-        result.passes.push_back({pass, median(times[pass])});
-    }
     result.shadowed = s.gpu.shadowed();
     if (request.bias) {
         result.biases = s.biased.measure(maps, chosen, how.warp, *request.bias);
@@ -526,14 +511,23 @@ method_result renderer::run(std::string_view name, const view_request& request) 
 }
 
 std::vector<double> renderer::more_frames(std::string_view name, const view_request& request) {
+    state& s = *state_;
+    if (!has_maps(name)) {
+        const auto frame = [&] { s.volumes.frame(s.seen, request.camera, request.light); };
+        frame(); // warms up
+        return time_frames(s.gpu, request.repeat, frame);
+    }
     const method& how = find_method(name);
-    standing_view view = state_->prepare(how, request);
-    return state_->time_frames(how, request, view);
+    standing_view view = s.prepare(how, request);
+    return time_frames(s.gpu, request.repeat, [&] { s.draw(how, request, view, false); });
 }
 
 moving_frame renderer::next_frame(std::string_view name, const view_request& request,
                                   method_memory& memory) {
     state& s = *state_;
+    if (!has_maps(name)) {
+        return s.volumes.next_frame(s.seen, request, s.before);
+    }
     const method& how = find_method(name);
     const std::string key = std::string(name) + " " + std::to_string(request.map_size);
     auto found = s.moving.find(key);
@@ -561,18 +555,11 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;
     light_memory copy = before; // the same frame once more, pass by pass
-    std::map<std::string, std::vector<double>> times;
-    s.gpu.time_into(&times);
-    s.frame(how, request, copy, maps, shadows, false);
-    s.remember(how, request, shadows);
-    s.gpu.begin_frame();
-    s.gpu.time_into(nullptr);
-    for (const auto& [pass, ms] : times) {
-        if (pass != "g-buffer" && pass != "shadow test") {
-            result.shadow_map_ms += median(ms);
-        }
-    }
-    if (s.remembers) {
+    result.shadow_map_ms = time_shadow_passes(s.gpu, [&] {
+        s.frame(how, request, copy, maps, shadows, false);
+        s.remember(how, request, shadows);
+    });
+    if (s.before) {
         s.gpu.use(s.seen_before);
         s.test(how, request.light, maps, chosen);
         result.shadowed_before = s.gpu.shadowed();
@@ -582,7 +569,7 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
 
 void renderer::remember_view(const std::optional<camera_view>& camera) {
     state& s = *state_;
-    s.remembers = camera.has_value();
+    s.before = camera;
     if (!camera) {
         s.moving.clear(); // another light may have another number of maps
     } else {

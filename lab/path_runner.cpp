@@ -11,7 +11,7 @@ namespace {
 /// One method at one map size while the camera moves.
 struct mover {
     std::string method;
-    int map;
+    int map; ///< 0 for a method without
     std::size_t record;
     method_memory memory;
     std::vector<std::uint8_t> shadowed; ///< of the last frame
@@ -29,12 +29,14 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
     for (const int map : wanted.maps) {
         for (const std::string& method : wanted.methods) {
             // the ray tracer is what the others are compared with
-            if (method == "raytraced" || why_not(method, light)) {
+            if (method == "raytraced" || why_not(method, light) ||
+                (!has_maps(method) && map != wanted.maps.front())) {
                 continue;
             }
-            movers.push_back({method, map, all.paths.size(), {}, {}});
+            const int own_map = has_maps(method) ? map : 0;
+            movers.push_back({method, own_map, all.paths.size(), {}, {}});
             all.paths.push_back(
-                {world.name, start.label, light.label, wanted.path, method, map, {}});
+                {world.name, start.label, light.label, wanted.path, method, own_map, {}});
         }
     }
     seen.count = movers.size();
@@ -84,12 +86,14 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
             if (shades) {
                 picture marked = shades->shade(each.shadowed);
                 paint_red(marked, against_truth.wrong);
-                const std::string caption = each.method + " at " + std::to_string(each.map) +
-                                            "², frame " + std::to_string(frame);
+                const std::string size = each.map == 0 ? "" : std::to_string(each.map);
+                const std::string caption = each.method +
+                                            (size.empty() ? "" : " at " + size + "²") + ", frame " +
+                                            std::to_string(frame);
                 png_file file = png_of(marked);
                 folder.write(picture_name({world.name, "c" + camera.label, "l" + light.label,
-                                           "m" + std::to_string(each.map), each.method, "frame",
-                                           std::to_string(frame)}),
+                                           (size.empty() ? "" : "m" + size + "-") + each.method,
+                                           "frame", std::to_string(frame)}),
                              file.bytes);
                 seen.pictures.emplace_back(caption, std::move(file));
             }

@@ -129,13 +129,13 @@ std::string comparison_of(const results& all, const view_pictures& view) {
     std::string chosen;
     for (const run_pictures& each : view.runs) {
         const run_record& run = all.runs[each.run];
-        if (run.map == 0) {
+        if (run.method == "raytraced") {
             continue;
         }
         const std::string id = "p" + std::to_string(each.run);
         chosen = chosen.empty() ? id : chosen;
-        choices += "<option value=\"" + id + "\">" + escaped(label_of(run)) + " " +
-                   std::to_string(run.map) + "²</option>";
+        choices += "<option value=\"" + id + "\">" + escaped(label_of(run)) +
+                   (run.map == 0 ? "" : " " + std::to_string(run.map) + "²") + "</option>";
     }
     if (chosen.empty()) {
         return "";
@@ -250,17 +250,18 @@ std::string view_section(const results& all, const view_pictures& view) {
             "</div></article>\n";
     for (const run_pictures& each : view.runs) {
         const run_record& run = all.runs[each.run];
-        if (run.map == 0) {
-            continue; // the ray tracer itself
+        if (run.method == "raytraced") {
+            continue; // the reference
         }
         const comparison& c = run.against_truth;
         html +=
             "<article><h3><i class=\"dot c" +
             std::to_string(rank_of(all, label_of(run)) % plot_colours) + "\"></i>" +
-            escaped(label_of(run)) + " <small>" + std::to_string(run.map) + "²</small></h3>\n<p>" +
-            percent_text(c.ratio(c.false_shadow + c.false_light)) + "&nbsp;% wrong, " +
-            ms_text(run.result.frame_ms_median) + "&nbsp;ms, " + bytes_text(run.result.bytes) +
-            "</p>\n" +
+            escaped(label_of(run)) +
+            (run.map == 0 ? std::string() : " <small>" + std::to_string(run.map) + "²</small>") +
+            "</h3>\n<p>" + percent_text(c.ratio(c.false_shadow + c.false_light)) +
+            "&nbsp;% wrong, " + ms_text(run.result.frame_ms_median) + "&nbsp;ms, " +
+            bytes_text(run.result.bytes) + "</p>\n" +
             (run.bias ? "<p>" + percent_text(run.bias_effect.acne_ratio) +
                             "&nbsp;% acne, displacement " +
                             texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels</p>\n"
@@ -306,13 +307,14 @@ std::string path_section(const results& all, const path_pictures& seen) {
         const path_means means = means_of(path);
         const std::size_t rank = rank_of(all, path.method);
         html += "<tr><td><i class=\"dot c" + std::to_string(rank % plot_colours) + "\"></i>" +
-                escaped(path.method) + "</td>" + cell(std::to_string(path.map)) +
+                escaped(path.method) + "</td>" +
+                cell(path.map == 0 ? "–" : std::to_string(path.map)) +
                 cell(percent_text(means.wrong_ratio)) +
                 cell(means.flip_ratio ? fixed(100.0 * *means.flip_ratio, 3) : "-") +
                 cell(fixed(glm::degrees(means.largest_turn), 2)) + cell(ms_text(means.frame_ms)) +
                 cell(ms_text(means.shadow_map_ms)) + cell(short_number(means.maps)) + "</tr>\n";
         const std::string name =
-            path.method + (seen.one_size ? "" : " " + std::to_string(path.map));
+            path.method + (seen.one_size || path.map == 0 ? "" : " " + std::to_string(path.map));
         for (std::vector<frame_series>* const each :
              {&wrong, &flips, &angles, &times, &shadow_map_times, &maps}) {
             each->push_back({name, rank, {}});

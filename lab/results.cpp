@@ -352,12 +352,12 @@ std::string table_of(const results& all) {
                 std::snprintf(buffer, sizeof buffer, how, value);
                 return std::string(buffer);
             };
-            rows.push_back({path.scene, path.camera, path.light, path.path, path.method,
-                            std::to_string(path.map), percent_text(means.wrong_ratio),
-                            means.flip_ratio ? number(100.0 * *means.flip_ratio, "%.3f") : "-",
-                            number(glm::degrees(means.largest_turn), "%.2f"),
-                            ms_text(means.frame_ms), ms_text(means.shadow_map_ms),
-                            number(means.maps, "%.1f")});
+            rows.push_back(
+                {path.scene, path.camera, path.light, path.path, path.method,
+                 path.map == 0 ? "-" : std::to_string(path.map), percent_text(means.wrong_ratio),
+                 means.flip_ratio ? number(100.0 * *means.flip_ratio, "%.3f") : "-",
+                 number(glm::degrees(means.largest_turn), "%.2f"), ms_text(means.frame_ms),
+                 ms_text(means.shadow_map_ms), number(means.maps, "%.1f")});
         }
         text += aligned(rows, 5);
     }

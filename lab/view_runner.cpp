@@ -38,11 +38,11 @@ std::vector<planned_run> plan_runs(const options& wanted, const light_view& ligh
     std::vector<planned_run> result;
     for (const int map : wanted.maps) {
         for (const std::string& method : wanted.methods) {
-            const bool traces = method == "raytraced";
-            if ((traces && map != wanted.maps.front()) || why_not(method, light)) {
+            const bool once = !has_maps(method);
+            if ((once && map != wanted.maps.front()) || why_not(method, light)) {
                 continue;
             }
-            if (traces) {
+            if (once) {
                 result.push_back({method, 0, {}, {}});
                 continue;
             }
@@ -102,7 +102,7 @@ class view_runner {
             for (std::size_t i = 0; i < plan_.size(); ++i) {
                 begin(plan_[i]);
                 method_result& result = all_.runs[first + i].result;
-                add_times(result, plan_[i].map == 0
+                add_times(result, traces(plan_[i])
                                       ? trace(result, rays_, samples_, light_, wanted_.repeat)
                                       : gpu_.more_frames(plan_[i].method, request(plan_[i])));
                 progress_.advance();
@@ -112,6 +112,8 @@ class view_runner {
     }
 
   private:
+    static bool traces(const planned_run& each) { return each.method == "raytraced"; }
+
     void begin(const planned_run& each) {
         stop_if_asked();
         progress_.show(world_.name + " " + each.method +
@@ -130,7 +132,7 @@ class view_runner {
     run_record measured(const planned_run& each) {
         run_record record{world_.name, camera_.label, light_.label, each.method, each.map, {}, {}};
         record.kind = kind_text(light_.light.kind);
-        if (each.map == 0) {
+        if (traces(each)) {
             add_times(record.result, trace(record.result, rays_, samples_, light_, wanted_.repeat));
             record.result.bytes = rays_.bytes();
             record.result.triangles = world_.triangles.size();
@@ -155,7 +157,7 @@ class view_runner {
         const shader shade(world_, rays_, samples_, camera_, light_);
         std::vector<std::span<const std::uint8_t>> marks;
         for (std::size_t i = first; i < all_.runs.size(); ++i) {
-            if (all_.runs[i].map != 0) {
+            if (all_.runs[i].method != "raytraced") {
                 marks.emplace_back(all_.runs[i].against_truth.wrong);
             }
         }
@@ -179,15 +181,17 @@ class view_runner {
         for (std::size_t i = first; i < all_.runs.size(); ++i) {
             run_record& run = all_.runs[i];
             run_pictures seen{i, {}, {}, {}, {}};
-            const bool shown = run.map != 0 && !run.variant &&
-                               (wanted_.pictured == 0 || run.map == wanted_.pictured);
+            const bool shown =
+                run.method != "raytraced" && !run.variant &&
+                (wanted_.pictured == 0 || run.map == 0 || run.map == wanted_.pictured);
             if (shown) {
-                const std::string map = "m" + std::to_string(run.map);
+                const std::string map =
+                    run.map == 0 ? std::string() : "m" + std::to_string(run.map) + "-";
                 const auto name = [&](const std::string& kind) {
-                    return picture_name({world_.name, place, lamp, map,
-                                         run.method + (run.bias ? "-" + *run.bias : std::string()) +
-                                             (run.raster ? "-" + *run.raster : std::string()) +
-                                             kind});
+                    return picture_name(
+                        {world_.name, place, lamp,
+                         map + run.method + (run.bias ? "-" + *run.bias : std::string()) +
+                             (run.raster ? "-" + *run.raster : std::string()) + kind});
                 };
                 const picture plain = run.result.light.empty() ? shade.shade(run.result.shadowed)
                                                                : shade.shade(run.result.light);
@@ -204,7 +208,7 @@ class view_runner {
                     seen.explanations.emplace_back(each.name, std::move(file));
                 }
             }
-            if (shown || run.map == 0 || wanted_.pictured == 0) {
+            if (shown || wanted_.pictured == 0 || run.map == 0) {
                 view.runs.push_back(std::move(seen));
             }
             // one value per pixel, which nothing needs any more

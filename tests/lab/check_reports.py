@@ -98,8 +98,8 @@ def check_results(results):
     assert results["timing"] == ("glfinish" if software else "timer_query")
     assert bool(results["runs"]) != bool(results["paths"]), "one or the other"
     for entry in results["runs"]:
-        # a paraboloid has no matrix, and the ray tracer no texels
-        measured = not entry["method"].startswith(("dpsm", "raytraced"))
+        # a paraboloid has no matrix, and what has no map no texels
+        measured = not entry["method"].startswith(("dpsm", "sv", "raytraced"))
         keys = RUN_KEYS | (METRIC_KEYS if measured else set())
         if measured and ("notw" in entry["method"] or entry["method"].startswith("rtw")):
             keys |= {"weakened", "predicted_texel_side"}
@@ -130,6 +130,10 @@ def check_results(results):
         assert entry["bytes"] > 0 and entry["triangles"] > 0
         if entry["method"] == "raytraced":
             assert entry["map"] == 0 and not wrong and not entry["grazing"]["wrong_pixel_ratio"]
+        elif entry["method"] == "sv":
+            assert entry["map"] == 0 and entry["maps"] == 0 and wrong < 0.005
+            assert list(entry["pass_ms"]) == ["g-buffer", "silhouettes", "shadow volumes",
+                                              "shadow test"]
         else:
             # partitions share the texels of one map, but for the rounding of their sides
             assert entry["bytes"] >= 3.9 * entry["map"] ** 2, "at least the depth of the map"
@@ -148,7 +152,8 @@ def facts(results):
 def check_every_method():
     first = report("every", "--scene", "leaves", "--methods", "all", "--map", "64,128")
     assert methods_of(first) == (
-        [(m, 64) for m in METHODS] + [("raytraced", 0)] + [(m, 128) for m in METHODS])
+        [(m, 64) for m in METHODS] + [("sv", 0), ("raytraced", 0)] +
+        [(m, 128) for m in METHODS])
     assert [e["method"] for e in first["not_applicable"]] == FOR_POINTS_ALONE
     by_name = {(r["method"], r["map"]): r["wrong_pixel_ratio"] for r in first["runs"]}
     assert by_name["sm", 128] < by_name["sm", 64], "a larger map is wrong less often"
@@ -179,7 +184,7 @@ def check_spot_and_point():
     camera = "-1,1.5,1,0.5,0.6,-0.5,60"
     spot = report("spot", "--scene", "interior", "--camera", camera, "--light",
                   "spot:0.2,1.97,-0.1,0.2,0,-0.1,120", "--map", "64", "--methods",
-                  "sm,min-sm,dv,lispsm,fitted,fitted-2,notw")
+                  "sm,min-sm,dv,lispsm,fitted,fitted-2,notw,sv")
     assert all(r["camera"] == camera for r in spot["runs"])
     assert {r["samples"] for r in spot["runs"]} == {spot["runs"][0]["samples"]}
     assert spot["runs"][0]["samples"] > 0
@@ -188,8 +193,8 @@ def check_spot_and_point():
     seen = ["min-sm", "dv", "lispsm", "fitted"] + FOR_POINTS_ALONE
     point = report("point", "--scene", "interior", "--camera", camera, "--light",
                    "point:0.2,1.97,-0.1", "--map", "64", "--methods",
-                   ",".join(NOT_FOR_POINTS + seen + ["raytraced"]))
-    assert methods_of(point) == [(m, 64) for m in seen] + [("raytraced", 0)]
+                   ",".join(NOT_FOR_POINTS + seen + ["sv", "raytraced"]))
+    assert methods_of(point) == [(m, 64) for m in seen] + [("sv", 0), ("raytraced", 0)]
     assert [(e["method"], e["light"]) for e in point["not_applicable"]] == (
         [(m, "point:0.2,1.97,-0.1") for m in NOT_FOR_POINTS])
     assert all(e["reason"] and e["scene"] == "interior" for e in point["not_applicable"])
@@ -269,25 +274,28 @@ def check_tables():
 
 def check_paths():
     """A camera that moves: frame by frame, and against what must hold for any camera."""
-    arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,raytraced", "--map", "64"]
+    arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,pssm,sv,raytraced", "--map",
+                 "64"]
     yaw = report("yaw", *arguments, "--path", "yaw", "--frames", "4")
-    assert [p["method"] for p in yaw["paths"]] == ["sm", "stable", "min-sm", "dv"]
+    maps = {"sm": 1, "stable": 1, "min-sm": 1, "dv": 1, "pssm": 4, "sv": 0}
+    assert [p["method"] for p in yaw["paths"]] == list(maps)
     for path in yaw["paths"]:
         assert list(path) == PATH_KEYS and path["path"] == "yaw" and len(path["frames"]) == 4
         frames = path["frames"]
         assert frames[0]["flip_ratio"] is None, "nothing goes before the first"
         assert all(0 <= f["flip_ratio"] <= 1 for f in frames[1:])
-        assert all(f["frame_ms"] > 0 and f["maps"] == 1 for f in frames)
+        assert all(f["frame_ms"] > 0 and f["maps"] == maps[path["method"]] for f in frames)
         flips = [f["flip_ratio"] for f in frames[1:]]
         assert abs(path["mean"]["flip_ratio"] - sum(flips) / len(flips)) < 1e-12
     flips = {p["method"]: p["mean"]["flip_ratio"] for p in yaw["paths"]}
     assert flips["sm"] == 0, "the map of the whole scene does not know the camera"
-    assert flips["stable"] < 0.01 < flips["dv"], flips
+    assert flips["sv"] == 0, "volumes do not know it either"
+    assert max(flips["stable"], flips["pssm"]) < 0.01 < flips["dv"], flips
     # what does not move does not flip, and the first frame is the view that stands still
     still = report("still", *arguments)
     first = {p["method"]: p["frames"][0] for p in yaw["paths"]}
     for entry in still["runs"]:
-        if entry["map"] != 0:
+        if entry["method"] != "raytraced":
             assert first[entry["method"]]["wrong_pixel_ratio"] == entry["wrong_pixel_ratio"]
             assert first[entry["method"]]["angle_degrees"] == entry["angle_degrees"]
 
