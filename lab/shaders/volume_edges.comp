@@ -17,13 +17,8 @@ layout(std430, binding = 7) buffer draw_arguments
 uniform uint edge_count;
 uniform uint vertices_per_side;
 
-void main()
+void find_side(uvec4 edge)
 {
-    uint id = gl_GlobalInvocationID.x;
-    if (id >= edge_count) {
-        return;
-    }
-    uvec4 edge = edges[id];
     int weight = 0;
     for (uint i = edge.z; i < edge.z + edge.w; ++i) {
         int turned = facing[runs[i] >> 1];
@@ -32,5 +27,13 @@ void main()
     if (weight != 0) {
         uint slot = atomicAdd(vertex_count, vertices_per_side) / vertices_per_side;
         sides[slot] = volume_side(edge.x, edge.y, weight);
+    }
+}
+
+void main()
+{
+    for (uint id = gl_GlobalInvocationID.x; id < edge_count;
+         id += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+        find_side(edges[id]);
     }
 }

@@ -16,11 +16,10 @@ vec3 corner(uint i)
 
 void main()
 {
-    uint id = gl_GlobalInvocationID.x;
-    if (id >= triangle_count) {
-        return;
+    for (uint id = gl_GlobalInvocationID.x; id < triangle_count;
+         id += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+        vec3 a = corner(3u * id);
+        vec3 normal = cross(corner(3u * id + 1u) - a, corner(3u * id + 2u) - a);
+        facing[id] = int(sign(dot(normal, light_position.xyz - light_position.w * a)));
     }
-    vec3 a = corner(3u * id);
-    vec3 normal = cross(corner(3u * id + 1u) - a, corner(3u * id + 2u) - a);
-    facing[id] = int(sign(dot(normal, light_position.xyz - light_position.w * a)));
 }
