@@ -28,7 +28,12 @@ constexpr std::array methods{
     method{.name = "min-sm-notw", .base = map_base::minimal, .warp = true},
     method{.name = "lispsm-notw", .base = map_base::lispsm, .desired_view = true, .warp = true},
     method{.name = "fitted-notw", .desired_view = true, .fitted = true, .warp = true},
-    method{.name = "notw", .desired_view = true, .warp = true, .for_points = "cube-notw"},
+    // what each sample adds to its row grows less than linearly: lines that are seen much get less
+    method{.name = "notw",
+           .desired_view = true,
+           .warp = true,
+           .tables = {.power = 2.0f / 3.0f, .build = {.window = 0.25f, .floor = 0.1f}},
+           .for_points = "cube-notw"},
     method{.name = "notw-nodv", .warp = true},
     method{.name = "notw-edges",
            .desired_view = true,
