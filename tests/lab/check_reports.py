@@ -23,7 +23,7 @@ FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-
                     "cube-notw", "dpsm-notw"]
 NOT_FOR_POINTS = ["sm", "stable", "pssm", "sdsm", "fitted-2", "notw", "notw-nodv", "notw-edges",
                   "notw-oracle", "rtw-forward", "rtw-backward", "rtw-hybrid"]
-PARTITIONED = ["sdsm", "fitted-2"]
+PARTITIONED = ("pssm", "sdsm", "fitted-2")
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
 RUN_KEYS = {
