@@ -41,7 +41,7 @@ constexpr std::array methods{
            .tables = {.shadows = known_shadows::last_frame,
                       .share = 0.5f,
                       .power = 2.0f / 3.0f,
-                      .build = {.floor = 0.1f}},
+                      .build = {.window = 0.25f, .floor = 0.1f}},
            .for_points = "cube-notw"},
     method{.name = "notw-oracle",
            .desired_view = true,
@@ -49,7 +49,7 @@ constexpr std::array methods{
            .tables = {.shadows = known_shadows::truth,
                       .share = 0.5f,
                       .power = 2.0f / 3.0f,
-                      .build = {.floor = 0.1f}},
+                      .build = {.window = 0.25f, .floor = 0.1f}},
            .for_points = "cube-notw"},
     // Rosen's forward analysis knows nothing of the view but its frustum
     method{.name = "rtw-forward",

@@ -69,12 +69,13 @@ options options_of_sweep(const std::string& name) {
                       "lispsm",      "fitted", "fitted-2",  "rtw-backward", "notw",   "notw-edges",
                       "fitted-notw", "cube6",  "cube6-efc", "cube-notw",    "dpsm",   "dpsm-pc",
                       "dpsm-notw",   "sv",     "raytraced"};
-    result.point_lights = {{"outdoor", "point:0,8,-8"}, {"interior", "point:0.2,1.97,-0.1"}};
+    result.point_lights = {{"interior", "point:0.2,1.97,-0.1"}};
     result.view = {512, 384};
     result.repeat = 1;
     result.rounds = 3;
     result.maps = {256, 512, 1024};
     if (full) {
+        result.point_lights.push_back({"outdoor", "point:0,8,-8"});
         result.cameras = {"0", "1", "2"};
         result.lights = {"0", "1", "2"};
         result.maps = {256, 512, 1024, 2048, 4096};
