@@ -132,6 +132,19 @@ def equal_quality(sweep):
     return "\n".join(lines) + "\n"
 
 
+def doubling(sweep):
+    """What twice the side of a map leaves of the wrong pixels."""
+    by = {(r["scene"], r["camera"], r["light"], r["method"], r["map"]): r["wrong_pixel_ratio"]
+          for r in sweep["runs"] if "variant" not in r}
+    ratios = {}
+    for (*view, method, size), wrong in by.items():
+        half = by.get((*view, method, size // 2))
+        if size and half and wrong:
+            ratios.setdefault(method, []).append(wrong / half)
+    return ("Twice the side of the map leaves this share of the wrong pixels (geometric mean over views "
+            "and sizes): " + ", ".join(f"`{m}` {times(mean(r))}" for m, r in ratios.items()) + ".\n")
+
+
 def variants(sweep):
     """What is varied one by one, against the same view without."""
     usual = {(r["scene"], r["camera"], r["light"], r["method"], r["map"]): r for r in sweep["runs"]
@@ -158,7 +171,7 @@ def main():
     check = arguments == ["--check"]
     sweep = json.loads((FOLDER / "sweep.json").read_text())
     script = "docs/accuracy/write_page.py"
-    fill(PAGE, {"answer": answer(sweep), "scores": scores(sweep), "exact": exact(sweep),
+    fill(PAGE, {"answer": answer(sweep), "doubling": doubling(sweep), "scores": scores(sweep), "exact": exact(sweep),
                 "equal": equal_quality(sweep), "variants": variants(sweep)}, script, check)
     fill(README, {"accuracy": answer(sweep, {"all"})}, script, check)
 
