@@ -1,4 +1,4 @@
-"""Blocks of a document that are written from measured results.
+"""Blocks of a document, and plots beside it, that are written from measured results.
 
 A block lies between <!-- NAME:begin --> and <!-- NAME:end -->.
 """
@@ -21,3 +21,17 @@ def fill(page, blocks, script, check):
         page.write_text(updated, encoding="utf-8")
     elif updated != text:
         sys.exit(f"{page.name} does not say what was measured: run {script}")
+
+
+def keep_pictures(folder, pictures, script, check):
+    """Writes the SVG files (name: text) of a folder; with `check` they must be all that is there."""
+    stale = []
+    for name, content in pictures.items():
+        file = folder / name
+        if not file.exists() or file.read_text(encoding="utf-8") != content:
+            stale.append(name)
+            if not check:
+                file.write_text(content, encoding="utf-8")
+    stale += sorted(file.name for file in folder.glob("*.svg") if file.name not in pictures)
+    if check and stale:
+        sys.exit(f"{', '.join(stale)}: not what was measured: run {script}")

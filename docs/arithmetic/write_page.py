@@ -13,7 +13,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page_blocks import fill  # noqa: E402
+from page_blocks import fill, keep_pictures  # noqa: E402
 
 import plots  # noqa: E402
 
@@ -219,17 +219,7 @@ def main():
         unit = unit_of(kernel) if kernel["decisions"] else f"{kernel['unit']}, 99.9 %"
         pictures[file_of(kernel)] = plots.scatter(series, variants_of(kernel),
                                                   f"ns per {kernel['per']}", unit)
-    stale = []
-    for name, content in pictures.items():
-        file = FOLDER / name
-        if not file.exists() or file.read_text(encoding="utf-8") != content:
-            stale.append(name)
-            if not check:
-                file.write_text(content, encoding="utf-8")
-    stale += sorted(file.name for file in FOLDER.glob("*.svg") if file.name not in pictures)
-    if check and stale:
-        sys.exit(f"{', '.join(stale)}: not what arithmetic.json says: "
-                 "run docs/arithmetic/write_page.py")
+    keep_pictures(FOLDER, pictures, "docs/arithmetic/write_page.py", check)
     blocks = {"steps": steps(kernels), "machine": machine(measured), "kernels": sections(measured),
               "fused": fused(measured)}
     fill(PAGE, blocks, "docs/arithmetic/write_page.py", check)

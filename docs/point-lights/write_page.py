@@ -14,7 +14,7 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page_blocks import fill  # noqa: E402
+from page_blocks import fill, keep_pictures  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "point-lights.md"
@@ -272,18 +272,7 @@ def main():
         "speed": culling_speed(measured),
         "chord": chord_line(measured),
     }
-    stale = []
-    pictures = plots(measured)
-    for name, content in pictures.items():
-        file = FOLDER / name
-        if not file.exists() or file.read_text(encoding="utf-8") != content:
-            stale.append(name)
-            if not check:
-                file.write_text(content, encoding="utf-8")
-    stale += sorted(file.name for file in FOLDER.glob("*.svg") if file.name not in pictures)
-    if check and stale:
-        sys.exit(f"{', '.join(stale)}: not what measured.json says: "
-                 "run docs/point-lights/write_page.py")
+    keep_pictures(FOLDER, plots(measured), "docs/point-lights/write_page.py", check)
     fill(PAGE, blocks, "docs/point-lights/write_page.py", check)
 
 
