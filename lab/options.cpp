@@ -255,8 +255,13 @@ std::optional<options> parse_options(int argc, const char* const* argv,
             throw bad_input("--sweep knows no --preset, --path, --bias and --filter");
         }
         const std::string out = result.out;
+        const bool list_scenes = result.list_scenes;
         result = options_of_sweep(sweep.empty() ? "short" : sweep);
         result.out = out;
+        result.list_scenes = list_scenes;
+        for (int i = 1; i < argc; ++i) {
+            result.arguments += std::string(argv[i]) + "\n";
+        }
         if (!(scenes.empty() && lights.empty())) {
             result.point_lights.clear();
         }

@@ -405,15 +405,25 @@ def check_sweep():
     arguments = ["--sweep", "--scene", "leaves", "--camera", "0", "--camera", "1", "--view",
                  "96x64", "--map", "32,128,512", "--methods",
                  "sm,pssm,sdsm,dv,fitted,notw,sv,raytraced", "--out", "sweep"]
-    stopped = subprocess.Popen([lab, *arguments], cwd=scratch, stderr=subprocess.PIPE, text=True)
     unfinished = scratch / ".sweep.unfinished"
-    while stopped.poll() is None and not list(unfinished.glob("*.cbor")):
-        time.sleep(0.01)
-    stopped.send_signal(signal.SIGINT)
-    assert "interrupted" in stopped.communicate()[1] and stopped.returncode == 1
-    (kept,) = unfinished.glob("*.cbor")
-    first = kept.read_bytes()
-    # what stands there of other settings is measured again, not taken
+
+    def stop_after_a_view(*more):
+        """Stops a sweep when it has kept another view than stood there; returns what it kept."""
+        before = [p.read_bytes() for p in unfinished.glob("*.cbor")]
+        going = subprocess.Popen([lab, *arguments, *more], cwd=scratch, stderr=subprocess.PIPE,
+                                 text=True)
+        while going.poll() is None and (
+                [p.read_bytes() for p in unfinished.glob("*.cbor")] in (before, [])):
+            time.sleep(0.01)
+        going.send_signal(signal.SIGINT)
+        assert "interrupted" in going.communicate()[1] and going.returncode == 1
+        (kept,) = unfinished.glob("*.cbor")
+        return kept.read_bytes()
+
+    # what stands there of other options is measured again, not taken
+    other = stop_after_a_view("--window", "0.5")
+    first = stop_after_a_view()
+    assert first != other
     assert not (scratch / "sweep").exists()
     done = run(*arguments)
     assert done.returncode == 0, done.stderr
