@@ -10,6 +10,7 @@
 // returned; if it is not finite; or if the call throws, crashes or does not end in 10 seconds.
 // Of sets with a NaN or an infinity only a report passes: an exception, a status, or a result that
 // is not finite. A hull fails if its vertices are not those of the exact hull.
+#include "arguments.hpp"
 #include "exact_geometry.hpp"
 #include "point_sets.hpp"
 
@@ -463,6 +464,8 @@ template <typename T> std::vector<candidate<T>> hull_candidates() {
 } // namespace
 
 int main(int argc, char** argv) {
+    bench::expect_values(argc, argv, 2,
+                         "[WARPSHADOW_SETS=400] geometry_failures [FILE.md [FILE.json]]");
     std::signal(SIGPIPE, SIG_IGN);
     const char* const asked = std::getenv("WARPSHADOW_SETS");
     const std::uint64_t sets = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 400;

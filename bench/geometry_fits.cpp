@@ -7,6 +7,7 @@
 // casters end; the light is the sun at 15 to 80 degrees. Two things are counted as used: the
 // footprint of the receivers' body (view ∩ bounds, all that a fit without samples can know), and
 // the convex hull of the ground points that 160 by 90 pixels see.
+#include "arguments.hpp"
 #include "geometry_inputs.hpp"
 
 #include <warpshadow/fit.hpp>
@@ -372,6 +373,7 @@ std::string drawing() {
 } // namespace
 
 int main(int argc, char** argv) {
+    bench::expect_values(argc, argv, 2, "geometry_fits [FILE.json [FILE.svg]]");
     const nlohmann::json json{{"waste", waste(1000)}, {"yaw", yaw(3600)}};
     if (argc > 1) {
         std::ofstream(argv[1]) << json.dump(2) << '\n';

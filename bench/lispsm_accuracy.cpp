@@ -2,6 +2,7 @@
 //
 // lispsm_accuracy [FILE.md [FILE.json]]: Markdown to the file, or to the standard output, and the
 // same numbers as JSON. Exit status 1 if an entry of the library exceeds the documented bound.
+#include "arguments.hpp"
 #include "lispsm_oracle.hpp"
 
 #include <warpshadow/lispsm.hpp>
@@ -111,6 +112,7 @@ std::string number(double x) {
 } // namespace
 
 int main(int argc, char** argv) {
+    bench::expect_values(argc, argv, 2, "lispsm_accuracy [FILE.md [FILE.json]]");
     std::ostringstream markdown;
     nlohmann::json rows = nlohmann::json::array();
     double worst[4] = {0.0, 0.0, 0.0, 0.0};

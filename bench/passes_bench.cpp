@@ -4,6 +4,7 @@
 // every pipeline once, so that all share whatever the machine is doing; medians over the rounds.
 // The inverse of all texel centres follows, by strips of a column and by a search for each texel.
 // Usage: passes_bench [rounds] [part of a line's name, such as "tables 128"]
+#include "arguments.hpp"
 #include "gl/context.hpp"
 #include "gl/mesh.hpp"
 #include "gl/objects.hpp"
@@ -477,6 +478,7 @@ int run(int rounds, const std::string& part) {
 } // namespace
 
 int main(int argc, char** argv) {
+    bench::expect_values(argc, argv, 2, "passes_bench [ROUNDS [TABLES]]");
     try {
         return run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 11, argc > 2 ? argv[2] : "");
     } catch (const gl::error& problem) {

@@ -5,6 +5,7 @@
 // at each shear limit, triangles of each size at random places and turned at random, half of them
 // anywhere and half where the view has samples. A triangle that turned over is cut into n x n
 // similar ones until none of those turns over.
+#include "arguments.hpp"
 #include "gl/context.hpp"
 #include "lab/light_maps.hpp"
 #include "lab/methods.hpp"
@@ -190,10 +191,7 @@ void count_all(const char* file) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 2 || (argc == 2 && argv[1][0] == '-')) {
-        std::fputs("usage: warp_folds [FILE.json]\n", stderr);
-        return argc == 2 && std::string_view(argv[1]) == "--help" ? 0 : 2;
-    }
+    bench::expect_values(argc, argv, 1, "warp_folds [FILE.json]");
     try {
         count_all(argc == 2 ? argv[1] : nullptr);
     } catch (const std::exception& error) {

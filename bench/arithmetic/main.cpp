@@ -3,6 +3,7 @@
 // arithmetic [FILE.json [ROUNDS]]: JSON to the file, or to the standard output; ROUNDS rounds of
 // timing (15 if it is not given). Errors are against a 100-digit oracle over fixed random inputs;
 // all variants of all kernels take turns in each round, so that a drift of the machine meets all.
+#include "../arguments.hpp"
 #include "describe.hpp"
 #include "measure.hpp"
 
@@ -97,6 +98,7 @@ nlohmann::json judged(const std::vector<double>& errors, bool decisions) {
 } // namespace
 
 int main(int argc, char** argv) {
+    bench::expect_values(argc, argv, 2, "arithmetic [FILE.json [ROUNDS]]");
     const int rounds = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 15;
     entries all;
     portable::add_kernels(all);
