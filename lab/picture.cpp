@@ -2,12 +2,33 @@
 
 #include "lab/scene_builder.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
+
+namespace {
+
+/// What stb asks for: `size` bytes at `data`, packed, in memory that it frees.
+unsigned char* packed(const unsigned char* data, int size, int* packed_size, int /*quality*/) {
+    uLongf length = compressBound(static_cast<uLong>(size));
+    auto* const result = static_cast<unsigned char*>(std::malloc(length));
+    if (result == nullptr || compress(result, &length, data, static_cast<uLong>(size)) != Z_OK) {
+        std::free(result);
+        return nullptr;
+    }
+    *packed_size = static_cast<int>(length);
+    return result;
+}
+
+} // namespace
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
+// zlib packs better than stb's own, in a fraction of the time
+#define STBIW_ZLIB_COMPRESS packed
 #include <stb/stb_image_write.h>
 
 namespace lab {
