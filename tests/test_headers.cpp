@@ -1,0 +1,1 @@
+// Nothing of its own: what is precompiled needs a target, see CMakeLists.txt.
