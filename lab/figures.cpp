@@ -3,7 +3,7 @@
 #include "lab/bias_run.hpp"
 #include "lab/method_table.hpp"
 #include "lab/plot.hpp"
-#include "lab/report.hpp"
+#include "lab/report_parts.hpp"
 #include "lab/vpl.hpp"
 
 #include <array>

@@ -1,16 +1,10 @@
 #include "lab/methods.hpp"
 
-#include "lab/align.hpp"
-#include "lab/bias_passes.hpp"
 #include "lab/frame_times.hpp"
 #include "lab/light_picture.hpp"
+#include "lab/method_frames.hpp"
 #include "lab/method_table.hpp"
-#include "lab/metric_passes.hpp"
-#include "lab/omni.hpp"
-#include "lab/passes.hpp"
 #include "lab/statistics.hpp"
-#include "lab/tables.hpp"
-#include "lab/volumes.hpp"
 #include "lab/warp_pictures.hpp"
 
 #include <algorithm>
@@ -36,42 +30,10 @@ double lit_cosine(const ws::light<double>& light, glm::dvec3 world, glm::dvec3 n
     return in_cone ? glm::dot(normal, l) : 0.0;
 }
 
-/// Cells along a side of the histogram that a projective warp is fitted to.
-constexpr int histogram_cells = 64;
-
-/// Texels along a side of each map: all partitions together have those of one map.
-int size_of_maps(const method& how, int map_size) {
-    return std::max(1, static_cast<int>(std::lround(map_size / std::sqrt(how.partitions))));
-}
-
-/// Maps that a method draws: as many as were chosen, unless its partitions share what was.
-std::size_t count_of_maps(const method& how, const light_maps& chosen) {
-    return std::max(chosen.maps.size(), static_cast<std::size_t>(how.partitions));
-}
-
-map_resources resources(const method& how, const view_request& request, std::size_t maps) {
-    const warp_options options = request.tables.over(how.tables);
-    const int size = size_of_maps(how, request.map_size);
-    const int cells = how.warp ? std::min(options.tables, size) : 0;
-    return {size, maps, cells, options.rectilinear ? 1 : cells};
-}
-
-/// Whether turning the map makes sense: not one face of several, and not where a matrix warps.
-bool can_be_turned(const method& how, const light_maps& chosen) {
-    return chosen.choice == map_choice::single && how.base != map_base::lispsm && !how.fitted;
-}
-
 /// What a method keeps on the device while a camera moves.
 struct moving_resources {
     map_resources maps;
     shadow_memory shadows;
-};
-
-/// What a method draws again and again for a camera that stands still.
-struct standing_view {
-    map_resources maps;
-    shadow_memory shadows;
-    light_maps chosen;
 };
 
 int used_maps(const light_maps& chosen) {
@@ -81,228 +43,8 @@ int used_maps(const light_maps& chosen) {
 
 } // namespace
 
-struct renderer::state {
-    state(const scene& world, glm::ivec2 view) : gpu(world, view), seen(view), seen_before(view) {}
-
-    light_maps choose_maps(const method& how, const view_request& request,
-                           light_memory& memory) const {
-        const scene& world = gpu.world();
-        if (how.base == map_base::whole_scene) {
-            return whole_scene_maps(world, request.light);
-        }
-        const ws::frustum<double> camera = camera_frustum(world, request.camera, gpu.view());
-        if (how.base == map_base::all_around) {
-            return omni_maps(world, std::span(&camera, 1), request.light, how.omni);
-        }
-        if (how.base == map_base::stable) {
-            return stable_maps(world, camera, request.light, request.map_size);
-        }
-        if (how.base == map_base::cascades) {
-            return cascade_maps(world, camera, request.light, how.partitions,
-                                size_of_maps(how, request.map_size));
-        }
-        return how.base == map_base::lispsm
-                   ? lispsm_maps(world, camera, request.light)
-                   : minimal_maps(world, camera, request.light, request.map_size, memory);
-    }
-
-    /// One frame from the G-buffer to the shadow test.
-    light_maps frame(const method& how, const view_request& request, light_memory& memory,
-                     map_resources& maps, const shadow_memory& shadows, bool count) {
-        const ws::frustum<double> camera = camera_frustum(gpu.world(), request.camera, gpu.view());
-        light_maps chosen = choose_maps(how, request, memory);
-        gpu.timed_pass("g-buffer", [&] {
-            gpu.draw_view(seen, camera_matrix(camera), glm::vec3(request.camera.eye));
-        });
-        gpu.use(seen, chosen, request.light.light);
-        if (chosen.maps.size() < count_of_maps(how, chosen)) {
-            gpu.timed_pass("depth range", [&] { split(how, camera, chosen); });
-            gpu.use(seen, chosen, request.light.light);
-        }
-        if (!drawn_one_by_one(how)) {
-            gpu.timed_pass("shadow map", [&] { omni.draw(maps, chosen, request.light, how.omni); });
-            culling_us.push_back(omni.culling_us());
-        }
-        memory.bends.resize(chosen.maps.size());
-        for (std::size_t i = 0; i < chosen.maps.size(); ++i) {
-            if (!chosen.maps[i].used || !drawn_one_by_one(how)) {
-                continue;
-            }
-            if (how.desired_view) {
-                gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
-            }
-            if (how.fitted) {
-                gpu.timed_pass("fit",
-                               [&] { fit(request.light.light.kind, i, memory.bends[i], chosen); });
-                // the fit knows the samples to a cell of its histogram; the crop knows them exactly
-                gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, i); });
-            }
-            if (how.warp) {
-                const warp_options options = request.tables.over(how.tables);
-                if (options.align && can_be_turned(how, chosen)) {
-                    align(how, options, camera, shadows, memory, maps, chosen);
-                }
-                if (options.build.v_first) {
-                    gpu.warp_map(i, glm::dmat4(glm::dvec4(0.0, 1.0, 0.0, 0.0),
-                                               glm::dvec4(1.0, 0.0, 0.0, 0.0),
-                                               glm::dvec4(0.0, 0.0, 1.0, 0.0),
-                                               glm::dvec4(0.0, 0.0, 0.0, 1.0)));
-                }
-                warps.build(maps, i, options, camera, shadows, count);
-                if (!how.omni.hemispheres) {
-                    weakened = warped.weaken(maps, i);
-                }
-                draw_warped(how, request, maps, i, count);
-            } else {
-                gpu.timed_pass("shadow map", [&] {
-                    if (request.bias) {
-                        biased.draw_map(maps, i, chosen, *request.bias);
-                    } else {
-                        gpu.draw_plain_map(maps, i);
-                    }
-                });
-            }
-        }
-        gpu.timed_pass("shadow test", [&] {
-            if (request.bias) {
-                biased.test(maps, chosen, how.warp, *request.bias);
-            } else {
-                test(how, request.light, maps, chosen);
-            }
-        });
-        return chosen;
-    }
-
-    /// Turns the one map there is, and crops it again.
-    void align(const method& how, const warp_options& options, const ws::frustum<double>& camera,
-               const shadow_memory& shadows, light_memory& memory, map_resources& maps,
-               light_maps& chosen) {
-        const std::vector<std::uint32_t> counts =
-            warps.importance(maps, 0, options, camera, shadows);
-        gpu.timed_pass("align", [&] {
-            chosen.angle = turn_to_importance(gpu, 0, counts, maps.warps.front().counts.width(),
-                                              chosen.angle, memory.turn);
-        });
-        if (how.desired_view) {
-            gpu.timed_pass("desired view", [&] { gpu.crop_to_desired_view(maps, 0); });
-        }
-    }
-
-    void draw_warped(const method& how, const view_request& request, map_resources& maps,
-                     std::size_t index, bool count) {
-        if (how.omni.hemispheres) {
-            omni.draw_warped(maps, index, request.light, count);
-        } else {
-            warped.draw_map(maps, index, request.raster, request.rays, count);
-        }
-    }
-
-    /// Makes the lists of cut triangles long enough; false if they were.
-    bool grow_lists(const method& how) {
-        return how.warp &&
-               (how.omni.hemispheres ? omni.raster().grow_lists() : warped.grow_lists());
-    }
-
-    void forget_counts() {
-        warped.forget_counts();
-        omni.raster().forget_counts();
-    }
-
-    const std::vector<triangle_counts>& counted(const method& how) const {
-        return how.omni.hemispheres ? omni.raster().counted() : warped.counted();
-    }
-
-    /// The shadows that a method is told before its first frame.
-    shadow_memory told(const method& how, const view_request& request) {
-        shadow_memory result;
-        if (how.tables.shadows == known_shadows::truth && request.truth != nullptr) {
-            warps.remember(result, camera_frustum(gpu.world(), request.camera, gpu.view()),
-                           *request.truth);
-        }
-        return result;
-    }
-
-    /// Keeps the shadows of a frame for the next, for methods that want them.
-    void remember(const method& how, const view_request& request, shadow_memory& shadows) {
-        if (how.tables.shadows == known_shadows::last_frame) {
-            gpu.timed_pass("keep shadows", [&] {
-                warps.remember(shadows, camera_frustum(gpu.world(), request.camera, gpu.view()));
-            });
-        }
-    }
-
-    /// One frame of a view that stands still.
-    void draw(const method& how, const view_request& request, standing_view& view, bool count) {
-        light_memory fresh;
-        view.chosen = frame(how, request, fresh, view.maps, view.shadows, count);
-        remember(how, request, view.shadows);
-    }
-
-    /// Makes what a view needs. The first frame warms up and, with tables, finds how long the lists
-    /// must be.
-    standing_view prepare(const method& how, const view_request& request) {
-        light_memory memory;
-        light_maps chosen = choose_maps(how, request, memory);
-        map_resources maps = resources(how, request, count_of_maps(how, chosen));
-        standing_view view{std::move(maps), {}, std::move(chosen)};
-        fit_us.clear();
-        culling_us.clear();
-        bool grown = false;
-        do {
-            view.shadows = told(how, request);
-            forget_counts();
-            draw(how, request, view, true);
-            grown = grow_lists(how);
-            if (!grown && how.tables.shadows == known_shadows::last_frame) {
-                // the shadows of a first frame make another warp, which may need more
-                forget_counts();
-                draw(how, request, view, true);
-                grown = grow_lists(how);
-            }
-        } while (grown);
-        glFinish();
-        return view;
-    }
-
-    /// Shadow test of the samples in use.
-    void test(const method& how, const light_view& light, map_resources& maps,
-              const light_maps& chosen) {
-        if (how.omni.hemispheres) {
-            omni.test_hemispheres(maps, chosen, light, how.warp);
-        } else {
-            gpu.test_shadows(maps, chosen, how.warp);
-        }
-    }
-
-    /// Splits the depths of the lit samples in equal ratios (practical split of quality alone).
-    void split(const method& how, const ws::frustum<double>& camera, light_maps& chosen) {
-        const glm::dvec2 range = gpu.depth_range(camera).value_or(
-            glm::dvec2(camera.volume.near_distance, camera.volume.far_distance));
-        const double nearest = std::max(range.x, camera.volume.near_distance);
-        std::vector<double> splits;
-        for (int i = 1; i < how.partitions; ++i) {
-            splits.push_back(nearest * std::pow(std::max(range.y / nearest, 1.0),
-                                                static_cast<double>(i) / how.partitions));
-        }
-        split_by_depth(chosen, camera, std::move(splits));
-    }
-
-    /// Fits a projective warp to the lit samples of one map.
-    void fit(ws::light_kind kind, std::size_t index, ws::projective_state<double>& bend,
-             light_maps& chosen) {
-        const std::vector<std::uint32_t> counts = gpu.histogram(index, histogram_cells);
-        const auto begin = std::chrono::steady_clock::now();
-        const ws::projective_result<double> fitted = ws::fit_projective<double>(
-            std::span<const std::uint32_t>(counts), histogram_cells, histogram_cells, {}, bend);
-        const std::chrono::duration<double, std::micro> elapsed =
-            std::chrono::steady_clock::now() - begin;
-        fit_us.push_back(elapsed.count());
-        bend = fitted.state;
-        chosen.flags |= fitted.flags;
-        gpu.warp_map(index, ws::projective_matrix(fitted.map, ws::clip::opengl, kind));
-        const auto centre = ws::projective_depth<double>(kind, ws::clip::opengl);
-        chosen.maps[index].linear = {1.0, centre, centre};
-    }
+struct renderer::state : method_frames {
+    state(const scene& world, glm::ivec2 view) : method_frames(world, view), seen_before(view) {}
 
     /// Guards of all steps of the last frame.
     std::vector<std::string> guards(const method& how, const light_maps& chosen,
@@ -372,17 +114,7 @@ struct renderer::state {
         return result;
     }
 
-    passes gpu;
-    warped_raster warped{gpu};
-    omni_passes omni{gpu};
-    bias_passes biased{gpu};
-    metric_passes metric{gpu};
-    table_passes warps{gpu};
-    volume_passes volumes{gpu};
-    g_buffer seen, seen_before;
-    std::vector<double> fit_us;        ///< times of the projective fit alone
-    std::vector<double> culling_us;    ///< times of sorting objects to the maps of a point light
-    double weakened = 0.0;             ///< share of the identity in the last tables
+    g_buffer seen_before;
     std::optional<camera_view> before; ///< the camera of `seen_before`
     // kept while a camera moves, so that frames do not begin with allocations
     std::map<std::string, moving_resources, std::less<>> moving;
@@ -534,7 +266,7 @@ moving_frame renderer::next_frame(std::string_view name, const view_request& req
     if (found == s.moving.end()) {
         light_memory unused;
         const light_maps first = s.choose_maps(how, request, unused);
-        moving_resources fresh{resources(how, request, count_of_maps(how, first)), {}};
+        moving_resources fresh{resources_for(how, request, count_of_maps(how, first)), {}};
         found = s.moving.emplace(key, std::move(fresh)).first;
         light_memory copy = memory.light;
         s.frame(how, request, copy, found->second.maps, found->second.shadows, false); // warms up

@@ -41,9 +41,6 @@ struct path_pictures {
     std::vector<std::pair<std::string, png_file>> pictures; ///< with their captions
 };
 
-/// A picture as an element of a page that holds it.
-std::string png_image(const png_file& source, const std::string& what);
-
 /// A page that needs nothing but itself: pictures and plots are inside.
 std::string html_of(const results& all, const std::vector<view_pictures>& views,
                     const std::vector<path_pictures>& paths,

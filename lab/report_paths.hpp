@@ -1,0 +1,13 @@
+// The part of report.html about one path of a camera: its table, plots and pictures.
+#pragma once
+
+#include "lab/report.hpp"
+
+#include <string>
+
+namespace lab {
+
+/// A section with the means of each method and its values over the frames.
+std::string path_section(const results& all, const path_pictures& seen);
+
+} // namespace lab
