@@ -46,6 +46,42 @@ std::optional<std::size_t> find_run(std::span<const run_record> runs,
     return found == view.end() ? std::nullopt : std::optional(*found);
 }
 
+/// For each view and each run of `targets` at `map`: of the runs of every other method with maps,
+/// those that match it, and of those the one with the least rank.
+template <typename Matches, typename Rank>
+std::vector<matched_run> match(std::span<const run_record> runs,
+                               std::span<const std::string> targets, int map, Matches matches,
+                               Rank rank) {
+    std::vector<matched_run> result;
+    for (const std::vector<std::size_t>& view : views_of(runs)) {
+        for (const std::string& name : targets) {
+            const std::optional<std::size_t> target = find_run(runs, view, name, map);
+            if (!target || !wrong_of(runs[*target])) {
+                continue;
+            }
+            const std::size_t first = result.size();
+            for (const std::size_t i : view) {
+                const run_record& run = runs[i];
+                if (run.map == 0 || run.variant || run.method == name) {
+                    continue;
+                }
+                const std::string text = method_text(run);
+                auto entry =
+                    std::find_if(result.begin() + static_cast<std::ptrdiff_t>(first), result.end(),
+                                 [&](const matched_run& each) { return each.method == text; });
+                if (entry == result.end()) {
+                    entry = result.insert(result.end(), {*target, text, std::nullopt});
+                }
+                if (matches(run, runs[*target]) &&
+                    (!entry->run || rank(run) < rank(runs[*entry->run]))) {
+                    entry->run = i;
+                }
+            }
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 double cost_of(const run_record& run, cost of) {
@@ -114,7 +150,7 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
                 found = std::prev(scores.end());
             }
             sums& sum = found->second;
-            sum.wrong.add(*ratio_of(run) / *ratio_of(other));
+            sum.wrong.add(wrong_ratio(run, other));
             sum.time.add(cost_of(run, cost::time) / cost_of(other, cost::time));
             sum.bytes.add(cost_of(run, cost::bytes) / cost_of(other, cost::bytes));
             sum.better += *wrong_of(run) < *wrong_of(other) ? 1u : 0u;
@@ -134,39 +170,28 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
     return result;
 }
 
-std::vector<equal_quality> match_quality(std::span<const run_record> runs,
-                                         std::span<const std::string> targets, int map) {
-    std::vector<equal_quality> result;
-    for (const std::vector<std::size_t>& view : views_of(runs)) {
-        for (const std::string& name : targets) {
-            const std::optional<std::size_t> target = find_run(runs, view, name, map);
-            if (!target || !wrong_of(runs[*target])) {
-                continue;
-            }
-            std::vector<std::string> methods;
-            for (const std::size_t i : view) {
-                const run_record& run = runs[i];
-                if (run.map == 0 || run.variant || run.method == name) {
-                    continue;
-                }
-                const std::string text = method_text(run);
-                auto place = std::find(methods.begin(), methods.end(), text);
-                if (place == methods.end()) {
-                    methods.push_back(text);
-                    result.push_back({*target, text, std::nullopt});
-                    place = std::prev(methods.end());
-                }
-                equal_quality& entry = result[result.size() - methods.size() +
-                                              static_cast<std::size_t>(place - methods.begin())];
-                const bool matches = *wrong_of(run) <= *wrong_of(runs[*target]);
-                if (matches && (!entry.run ||
-                                cost_of(run, cost::time) < cost_of(runs[*entry.run], cost::time))) {
-                    entry.run = i;
-                }
-            }
-        }
-    }
-    return result;
+double wrong_ratio(const run_record& run, const run_record& to) {
+    return *ratio_of(run) / *ratio_of(to);
+}
+
+std::vector<matched_run> match_quality(std::span<const run_record> runs,
+                                       std::span<const std::string> targets, int map) {
+    return match(
+        runs, targets, map,
+        [](const run_record& run, const run_record& target) {
+            return *wrong_of(run) <= *wrong_of(target);
+        },
+        [](const run_record& run) { return cost_of(run, cost::time); });
+}
+
+std::vector<matched_run> match_time(std::span<const run_record> runs,
+                                    std::span<const std::string> targets, int map) {
+    return match(
+        runs, targets, map,
+        [](const run_record& run, const run_record& target) {
+            return cost_of(run, cost::time) <= cost_of(target, cost::time);
+        },
+        [](const run_record& run) { return std::pair(*wrong_of(run), cost_of(run, cost::time)); });
 }
 
 std::vector<budget_choice> choose_for_budgets(std::span<const run_record> runs, int map,

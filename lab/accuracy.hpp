@@ -53,17 +53,26 @@ struct method_score {
 /// Scores of all methods at all sizes.
 std::vector<method_score> score_methods(std::span<const run_record> runs);
 
-/// What a method needs to be as good as another one.
-struct equal_quality {
+/// The run of a method that matches one of another method.
+struct matched_run {
     std::size_t target;             ///< index of the run to be matched
     std::string method;             ///< that is to match it
-    std::optional<std::size_t> run; ///< its cheapest run that does; nothing: none of its sizes
+    std::optional<std::size_t> run; ///< its run that does; nothing: none of its sizes
 };
 
 /// For each view and each run of `targets` at `map`: the cheapest run of every other method with
 /// maps that has no more wrong pixels.
-std::vector<equal_quality> match_quality(std::span<const run_record> runs,
-                                         std::span<const std::string> targets, int map);
+std::vector<matched_run> match_quality(std::span<const run_record> runs,
+                                       std::span<const std::string> targets, int map);
+
+/// For each view and each run of `targets` at `map`: the run of every other method with maps that
+/// has the fewest wrong pixels among those whose frame takes no longer; of equal ones the cheapest.
+std::vector<matched_run> match_time(std::span<const run_record> runs,
+                                    std::span<const std::string> targets, int map);
+
+/// Share of wrong samples of a run to that of another; half a sample stands for none. Both have
+/// samples that count.
+double wrong_ratio(const run_record& run, const run_record& to);
 
 /// The best method for a budget, over all views of a scene and a kind of light.
 struct budget_choice {

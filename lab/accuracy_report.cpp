@@ -19,8 +19,14 @@ using nlohmann::ordered_json;
 constexpr std::array budgets{1.0, 1.25, 1.5, 2.0, 4.0, std::numeric_limits<double>::infinity()};
 
 /// Methods whose quality others are asked to match.
-const std::vector<std::string>& targets() {
+const std::vector<std::string>& quality_targets() {
     static const std::vector<std::string> names{"fitted", "notw", "cube-notw"};
+    return names;
+}
+
+/// Methods whose time others may take.
+const std::vector<std::string>& time_targets() {
+    static const std::vector<std::string> names{"sm", "cube6", "fitted", "notw", "cube-notw"};
     return names;
 }
 
@@ -111,17 +117,21 @@ std::string score_table(const results& all) {
     return html + "</tbody></table></div>\n";
 }
 
+std::string view_cell(const run_record& run) {
+    return text_cell(run.scene + ", " + run.camera + ", " + run.light);
+}
+
 std::string quality_table(const results& all) {
     std::string html =
         "<h2>What it takes to be as good</h2>\n<p>For each view, the cheapest measured size at "
         "which a method has no more wrong pixels than the first, and what its frame and its "
         "memory cost, to those of the first.</p>\n" +
         head({"view", "as good as", "method", "map", "wrong&nbsp;%", "frame time", "bytes"}, 3);
-    for (const equal_quality& each : match_quality(all.runs, targets(), all.matched)) {
+    for (const matched_run& each : match_quality(all.runs, quality_targets(), all.matched)) {
         const run_record& target = all.runs[each.target];
-        html += "<tr>" + text_cell(target.scene + ", " + target.camera + ", " + target.light) +
-                "<td>" + escaped(target.method) + " " + std::to_string(target.map) +
-                "²: " + percent_text(wrong_of(target)) + "&nbsp;%</td>" + text_cell(each.method);
+        html += "<tr>" + view_cell(target) + "<td>" + escaped(target.method) + " " +
+                std::to_string(target.map) + "²: " + percent_text(wrong_of(target)) +
+                "&nbsp;%</td>" + text_cell(each.method);
         if (!each.run) {
             html += number_cell("none") + number_cell("") + number_cell("") + number_cell("");
         } else {
@@ -136,11 +146,48 @@ std::string quality_table(const results& all) {
     return html + "</tbody></table></div>\n";
 }
 
+std::string time_table(const results& all) {
+    std::string html =
+        "<h2>What the same time buys</h2>\n<p>For each view, the measured size with the fewest "
+        "wrong pixels among those at which the frame of a method takes no longer than that of the "
+        "first; wrong pixels and frame time to those of the first.</p>\n" +
+        head({"view", "no longer than", "method", "map", "wrong&nbsp;%", "wrong", "frame time"}, 3);
+    for (const matched_run& each : match_time(all.runs, time_targets(), all.matched)) {
+        const run_record& target = all.runs[each.target];
+        html += "<tr>" + view_cell(target) + "<td>" + escaped(target.method) + " " +
+                std::to_string(target.map) + "²: " + ms_text(cost_of(target, cost::time)) +
+                "&nbsp;ms</td>" + text_cell(each.method);
+        if (!each.run) {
+            html += number_cell("none") + number_cell("") + number_cell("") + number_cell("");
+        } else {
+            const run_record& run = all.runs[*each.run];
+            html += number_cell(std::to_string(run.map)) +
+                    number_cell(percent_text(wrong_of(run))) +
+                    number_cell(times(wrong_ratio(run, target))) +
+                    number_cell(times(cost_of(run, cost::time) / cost_of(target, cost::time)));
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+/// What is matched, by what, and at which size.
+ordered_json json_of(const matched_run& each, const results& all) {
+    const run_record& target = all.runs[each.target];
+    return {{"scene", target.scene},
+            {"camera", target.camera},
+            {"light", target.light},
+            {"target", target.method},
+            {"method", each.method},
+            {"map", each.run ? ordered_json(all.runs[*each.run].map) : ordered_json(nullptr)}};
+}
+
 } // namespace
 
 std::string accuracy_section(const results& all) {
     return "<div class=\"accuracy\">\n" + answer(all) + score_table(all) +
            "<details><summary>Equal quality, view by view</summary>\n" + quality_table(all) +
+           "</details>\n<details><summary>Equal time, view by view</summary>\n" + time_table(all) +
            "</details>\n</div>\n";
 }
 
@@ -174,19 +221,30 @@ ordered_json accuracy_json(const results& all) {
                                   {"worse", each.worse}});
     }
     json["equal_quality"] = ordered_json::array();
-    for (const equal_quality& each : match_quality(all.runs, targets(), all.matched)) {
-        const run_record& target = all.runs[each.target];
-        ordered_json entry = {{"scene", target.scene}, {"camera", target.camera},
-                              {"light", target.light}, {"target", target.method},
-                              {"method", each.method}, {"map", nullptr},
-                              {"frame_time", nullptr}, {"bytes", nullptr}};
+    for (const matched_run& each : match_quality(all.runs, quality_targets(), all.matched)) {
+        ordered_json entry = json_of(each, all);
+        entry["frame_time"] = nullptr;
+        entry["bytes"] = nullptr;
         if (each.run) {
+            const run_record& target = all.runs[each.target];
             const run_record& run = all.runs[*each.run];
-            entry["map"] = run.map;
             entry["frame_time"] = cost_of(run, cost::time) / cost_of(target, cost::time);
             entry["bytes"] = cost_of(run, cost::bytes) / cost_of(target, cost::bytes);
         }
         json["equal_quality"].push_back(entry);
+    }
+    json["equal_time"] = ordered_json::array();
+    for (const matched_run& each : match_time(all.runs, time_targets(), all.matched)) {
+        ordered_json entry = json_of(each, all);
+        entry["wrong"] = nullptr;
+        entry["frame_time"] = nullptr;
+        if (each.run) {
+            const run_record& target = all.runs[each.target];
+            const run_record& run = all.runs[*each.run];
+            entry["wrong"] = wrong_ratio(run, target);
+            entry["frame_time"] = cost_of(run, cost::time) / cost_of(target, cost::time);
+        }
+        json["equal_time"].push_back(entry);
     }
     return json;
 }

@@ -18,6 +18,7 @@ from page_blocks import fill  # noqa: E402
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "accuracy.md"
 README = FOLDER.parents[1] / "README.md"
+UNMEASURED = "The committed sweep has no such rows yet.\n"
 KINDS = {"sun": "suns", "spot": "spot lights", "point": "point lights"}
 
 
@@ -113,23 +114,34 @@ def exact(sweep):
     return "\n".join(lines) + "\n"
 
 
-def equal_quality(sweep):
-    rows = sweep["accuracy"]["equal_quality"]
+def matched(sweep, rows, head, key):
+    """What matches each target on each view: the size of the map, and a ratio to the target."""
     methods = [m for m in dict.fromkeys(r["method"] for r in rows) if " " not in m]
-    shown = [m for m in ("sm", "pssm", "sdsm", "dv", "fitted", "notw", "cube6", "dpsm")
+    shown = [m for m in ("sm", "pssm", "sdsm", "min-sm", "dv", "fitted", "notw", "cube6", "dpsm")
              if m in methods]
     size = sweep["accuracy"]["map"]
-    lines = [row(["view", "as good as", *(f"`{m}`" for m in shown)]),
-             row(["---"] * (2 + len(shown)))]
-    for scene, light, target in dict.fromkeys((r["scene"], r["light"], r["target"]) for r in rows):
+    lines = [row(["view", head, *(f"`{m}`" for m in shown)]), row(["---"] * (2 + len(shown)))]
+    for scene, camera, light, target in dict.fromkeys(
+            (r["scene"], r["camera"], r["light"], r["target"]) for r in rows):
         cells = []
         for method in shown:
-            found = next((r for r in rows if (r["scene"], r["light"], r["target"], r["method"])
-                          == (scene, light, target, method)), None)
+            found = next((r for r in rows if (r["scene"], r["camera"], r["light"], r["target"],
+                                              r["method"])
+                          == (scene, camera, light, target, method)), None)
             cells.append("" if found is None else "none" if found["map"] is None else
-                         f"{found['map']}²: {times(found['frame_time'])}")
-        lines.append(row([f"{scene}, {light}", f"`{target}` {size}²", *cells]))
+                         f"{found['map']}²: {times(found[key])}")
+        view = scene if camera == "0" else f"{scene}, camera {camera}"
+        lines.append(row([f"{view}, {light}", f"`{target}` {size}²", *cells]))
     return "\n".join(lines) + "\n"
+
+
+def equal_quality(sweep):
+    return matched(sweep, sweep["accuracy"]["equal_quality"], "as good as", "frame_time")
+
+
+def equal_time(sweep):
+    rows = sweep["accuracy"].get("equal_time")
+    return matched(sweep, rows, "no longer than", "wrong") if rows else UNMEASURED
 
 
 def doubling(sweep):
@@ -172,7 +184,8 @@ def main():
     sweep = json.loads((FOLDER / "sweep.json").read_text())
     script = "docs/accuracy/write_page.py"
     fill(PAGE, {"answer": answer(sweep), "doubling": doubling(sweep), "scores": scores(sweep), "exact": exact(sweep),
-                "equal": equal_quality(sweep), "variants": variants(sweep)}, script, check)
+                "equal": equal_quality(sweep),
+                "equal-time": equal_time(sweep), "variants": variants(sweep)}, script, check)
     fill(README, {"accuracy": answer(sweep, {"all"})}, script, check)
 
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 
 namespace {
@@ -75,6 +76,7 @@ TEST_CASE("front: a run without samples is not on it") {
     REQUIRE(lab::pareto_front(runs, all_of(runs), lab::cost::time).empty());
     REQUIRE(lab::score_methods(runs).empty());
     REQUIRE(lab::match_quality(runs, std::vector<std::string>{"sm"}, 512).empty());
+    REQUIRE(lab::match_time(runs, std::vector<std::string>{"sm"}, 512).empty());
     REQUIRE(lab::choose_for_budgets(runs, 512, std::vector<double>{1.0}).empty());
 }
 
@@ -99,11 +101,66 @@ TEST_CASE("equal quality: the cheapest size that has no more wrong pixels, or no
         run_of("a", "notw", 512, 20, 5.0), run_of("a", "sm", 256, 100, 1.0),
         run_of("a", "sm", 1024, 20, 3.0),  run_of("a", "sm", 2048, 10, 9.0),
         run_of("a", "dv", 512, 30, 1.0),   run_of("a", "raytraced", 0, 0, 1.0)};
-    const std::vector<lab::equal_quality> rows =
+    const std::vector<lab::matched_run> rows =
         lab::match_quality(runs, std::vector<std::string>{"notw", "absent"}, 512);
     REQUIRE(rows.size() == 2);
     REQUIRE((rows[0].method == "sm" && rows[0].run == std::size_t(2) && rows[0].target == 0));
     REQUIRE((rows[1].method == "dv" && !rows[1].run));
+}
+
+TEST_CASE("equal time: no run that fits the target's frame has fewer wrong pixels") {
+    std::mt19937 random(2);
+    std::uniform_int_distribution<int> value(0, 12);
+    const std::vector<std::string> methods{"sm", "dv", "notw"};
+    const std::vector<std::string> targets{"notw", "sm"};
+    std::size_t found = 0;
+    std::size_t missed = 0;
+    for (int round = 0; round < 200; ++round) {
+        std::vector<lab::run_record> runs;
+        for (const std::string scene : {"a", "b"}) {
+            for (const std::string& method : methods) {
+                for (const int map : {256, 512, 1024}) {
+                    runs.push_back(run_of(scene, method, map,
+                                          static_cast<std::size_t>(value(random)),
+                                          1.0 + value(random)));
+                }
+            }
+            runs.push_back(run_of(scene, "raytraced", 0, 0, 0.5)); // has no map to choose
+            runs.push_back(run_of(scene, "dv", 512, 0, 0.5));      // no method, but a variant
+            runs.back().variant = "other tables";
+        }
+        const std::vector<lab::matched_run> rows = lab::match_time(runs, targets, 512);
+        REQUIRE(rows.size() == 2 * targets.size() * (methods.size() - 1));
+        for (const lab::matched_run& row : rows) {
+            const lab::run_record& target = runs[row.target];
+            REQUIRE(target.map == 512);
+            REQUIRE(row.method != target.method);
+            std::optional<std::size_t> least; // of wrong samples, by trying all
+            for (const lab::run_record& run : runs) {
+                if (run.scene == target.scene && run.method == row.method && !run.variant &&
+                    run.result.frame_ms_median <= target.result.frame_ms_median) {
+                    const std::size_t wrong = run.against_truth.false_light;
+                    least = least ? std::min(*least, wrong) : wrong;
+                }
+            }
+            REQUIRE(row.run.has_value() == least.has_value());
+            if (!row.run) {
+                ++missed;
+                continue;
+            }
+            ++found;
+            const lab::run_record& run = runs[*row.run];
+            REQUIRE((run.scene == target.scene && run.method == row.method && !run.variant));
+            REQUIRE(run.result.frame_ms_median <= target.result.frame_ms_median);
+            REQUIRE(run.against_truth.false_light == *least);
+            const double none = 0.5; // stands for no wrong sample
+            REQUIRE(lab::wrong_ratio(run, target) ==
+                    Approx(std::max(static_cast<double>(*least), none) /
+                           std::max(static_cast<double>(target.against_truth.false_light), none)));
+        }
+    }
+    REQUIRE(found > 100);
+    REQUIRE(missed > 100);
 }
 
 TEST_CASE("budgets: the least error that the time allows, on all views of the scene") {

@@ -445,6 +445,14 @@ def check_sweep():
         assert of_size[32] > of_size[128] > of_size[512], (method, of_size)
     accuracy = results["accuracy"]
     assert accuracy["map"] == 512 and accuracy["scores"] and accuracy["equal_quality"]
+    timed = {(r["camera"], r["method"], r["map"]): r for r in runs if "variant" not in r}
+    bought = [e for e in accuracy["equal_time"] if e["map"]]
+    assert {e["target"] for e in bought} == {"sm", "fitted", "notw"}
+    for entry in bought:
+        one, target = (timed[entry["camera"], m, s] for m, s in
+                       ((entry["method"], entry["map"]), (entry["target"], 512)))
+        assert one["frame_ms"]["median"] <= target["frame_ms"]["median"], entry
+        assert abs(entry["wrong"] * target["wrong_pixel_ratio"] - one["wrong_pixel_ratio"]) < 1e-9
     best = [b for b in accuracy["budgets"] if b["scene"] == "leaves"]
     errors = [b["wrong_pixel_ratio"] for b in best]
     assert errors == sorted(errors, reverse=True), "more time is never worse"
