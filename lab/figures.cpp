@@ -4,6 +4,7 @@
 #include "lab/method_table.hpp"
 #include "lab/plot.hpp"
 #include "lab/report_parts.hpp"
+#include "lab/view_arguments.hpp"
 #include "lab/vpl.hpp"
 
 #include <array>

@@ -15,6 +15,7 @@
 #include "lab/sweep.hpp"
 #include "lab/truth.hpp"
 #include "lab/view_archive.hpp"
+#include "lab/view_arguments.hpp"
 #include "lab/view_runner.hpp"
 #include "lab/vpl.hpp"
 

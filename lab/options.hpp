@@ -67,17 +67,4 @@ raster_choice raster_of(const options& wanted);
 std::optional<options> parse_options(int argc, const char* const* argv,
                                      std::span<const std::string_view> methods);
 
-/// The camera that `text` names in `world`: a number, or ex,ey,ez,tx,ty,tz,fov.
-camera_view resolve_camera(const std::string& text, const scene& world);
-
-/// The light that `text` names in `world`: a number, or sun:…, spot:…, point:….
-light_view resolve_light(const std::string& text, const scene& world);
-
-/// "sun", "spot" or "point".
-std::string kind_text(warpshadow::light_kind kind);
-
-/// The lab's syntax for a camera and a light, as --list-scenes shows them.
-std::string camera_text(const camera_view& camera);
-std::string light_text(const light_view& light);
-
 } // namespace lab

@@ -2,6 +2,7 @@
 
 #include "lab/options.hpp"
 #include "lab/statistics.hpp"
+#include "lab/view_arguments.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -2,6 +2,7 @@
 
 #include "lab/light_maps.hpp"
 #include "lab/method_table.hpp"
+#include "lab/view_arguments.hpp"
 
 #include <algorithm>
 

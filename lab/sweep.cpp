@@ -1,6 +1,7 @@
 #include "lab/sweep.hpp"
 
 #include "lab/view_archive.hpp"
+#include "lab/view_arguments.hpp"
 #include "lab/view_runner.hpp"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "lab/method_table.hpp"
 #include "lab/picture.hpp"
 #include "lab/statistics.hpp"
+#include "lab/view_arguments.hpp"
 
 #include <algorithm>
 #include <cstdint>

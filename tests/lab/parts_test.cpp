@@ -6,6 +6,7 @@
 #include "lab/results.hpp"
 #include "lab/scene.hpp"
 #include "lab/truth.hpp"
+#include "lab/view_arguments.hpp"
 
 #include <catch2/catch.hpp>
 
