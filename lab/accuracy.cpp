@@ -46,6 +46,12 @@ std::optional<std::size_t> find_run(std::span<const run_record> runs,
     return found == view.end() ? std::nullopt : std::optional(*found);
 }
 
+/// Microseconds on the host, all parts together.
+double set_up_us(const run_record& run) {
+    return std::accumulate(run.result.cpu_setup_us.begin(), run.result.cpu_setup_us.end(), 0.0,
+                           [](double sum, const auto& part) { return sum + part.second; });
+}
+
 /// For each view and each run of `targets` at `map`: of the runs of every other method with maps,
 /// those that match it, and of those the one with the least rank.
 template <typename Matches, typename Rank>
@@ -136,7 +142,7 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
             const run_record& run = runs[i];
             const std::optional<std::size_t> base =
                 find_run(runs, view, reference_for(run.kind), run.map);
-            if (!base || !ratio_of(run)) {
+            if (!base || run.variant || !ratio_of(run)) {
                 continue;
             }
             const run_record& other = runs[*base];
@@ -166,6 +172,56 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
         result.back().bytes = sum.bytes.value();
         result.back().better = sum.better;
         result.back().worse = sum.worse;
+    }
+    return result;
+}
+
+std::vector<variant_score> score_variants(std::span<const run_record> runs) {
+    struct sums {
+        geometric_mean wrong, time, bytes, set_up, light_error;
+    };
+    std::vector<std::pair<variant_score, sums>> scores;
+    for (const std::vector<std::size_t>& view : views_of(runs)) {
+        for (const std::size_t i : view) {
+            const run_record& run = runs[i];
+            const std::optional<std::size_t> base = find_run(runs, view, run.method, run.map);
+            if (!run.variant || !base || !ratio_of(run)) {
+                continue;
+            }
+            const run_record& usual = runs[*base];
+            auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& each) {
+                return each.first.method == run.method && each.first.variant == *run.variant;
+            });
+            if (found == scores.end()) {
+                found = scores.insert(scores.end(),
+                                      {{run.method, *run.variant, 0, 0.0, 0.0, 0.0, 0.0, {}}, {}});
+            }
+            const double none = 0.5 / static_cast<double>(run.against_truth.samples);
+            sums& sum = found->second;
+            sum.wrong.add(run.filtered.wrong
+                              ? std::max(*run.filtered.wrong, none) / *ratio_of(usual)
+                              : wrong_ratio(run, usual));
+            if (run.filtered.mean_light) {
+                sum.light_error.add(std::max(*run.filtered.mean_light, none) / *ratio_of(usual));
+            }
+            sum.time.add(cost_of(run, cost::time) / cost_of(usual, cost::time));
+            sum.bytes.add(cost_of(run, cost::bytes) / cost_of(usual, cost::bytes));
+            if (set_up_us(run) > 0.0 && set_up_us(usual) > 0.0) {
+                sum.set_up.add(set_up_us(run) / set_up_us(usual));
+            }
+        }
+    }
+    std::vector<variant_score> result;
+    for (const auto& [score, sum] : scores) {
+        result.push_back(score);
+        result.back().views = sum.wrong.count;
+        result.back().wrong = sum.wrong.value();
+        result.back().time = sum.time.value();
+        result.back().bytes = sum.bytes.value();
+        result.back().set_up = sum.set_up.value();
+        if (sum.light_error.count > 0) {
+            result.back().light_error = sum.light_error.value();
+        }
     }
     return result;
 }
@@ -218,7 +274,7 @@ std::vector<budget_choice> choose_for_budgets(std::span<const run_record> runs, 
             }
             for (const std::size_t i : view) {
                 const run_record& run = runs[i];
-                if (run.map == 0) {
+                if (run.map == 0 || run.variant) {
                     continue;
                 }
                 std::vector<candidate>& all = candidates[group];

@@ -50,8 +50,24 @@ struct method_score {
     std::size_t worse;
 };
 
-/// Scores of all methods at all sizes.
+/// Scores of all methods at all sizes; variants have theirs, see `score_variants`.
 std::vector<method_score> score_methods(std::span<const run_record> runs);
+
+/// A method with one thing changed, over all views, as ratios to the same method without.
+struct variant_score {
+    std::string method;
+    std::string variant;
+    std::size_t views;
+    double wrong; ///< geometric mean of the ratios; of filtered shadows, where there is a filter
+    double time;
+    double bytes;
+    double set_up; ///< time on the host, all its parts together
+    /// Mean error of the filtered light; without a filter that is the share of wrong samples.
+    std::optional<double> light_error;
+};
+
+/// Scores of all variants, in order of appearance.
+std::vector<variant_score> score_variants(std::span<const run_record> runs);
 
 /// The run of a method that matches one of another method.
 struct matched_run {
@@ -88,7 +104,7 @@ struct budget_choice {
 /// For each scene, kind of light and budget, the method and size with the fewest wrong pixels among
 /// those that ran on all its views and cost no more than the budget in the geometric mean.
 ///
-/// Methods without a map are left out: they have no error to trade.
+/// Methods without a map are left out: they have no error to trade; and so are variants.
 /// @param map size of the reference that budgets are multiples of
 std::vector<budget_choice> choose_for_budgets(std::span<const run_record> runs, int map,
                                               std::span<const double> budgets);

@@ -117,6 +117,29 @@ std::string score_table(const results& all) {
     return html + "</tbody></table></div>\n";
 }
 
+std::string variant_table(const results& all) {
+    const std::vector<variant_score> scores = score_variants(all.runs);
+    if (scores.empty()) {
+        return {};
+    }
+    std::string html =
+        "<h2>One thing at a time</h2>\n<p>Ratios to the same method with its defaults, at the same "
+        "size, geometric means over the views. Light error: mean difference of filtered light and "
+        "that of the ray tracer, to that of hard shadows, which is their share of wrong pixels; a "
+        "filtered pixel is wrong when more than half of its light is. Set-up: time on the "
+        "host.</p>\n" +
+        head({"method", "with", "views", "wrong", "light error", "frame time", "bytes", "set-up"},
+             2);
+    for (const variant_score& each : scores) {
+        html += "<tr>" + text_cell(each.method) + text_cell(each.variant) +
+                number_cell(std::to_string(each.views)) + number_cell(times(each.wrong)) +
+                number_cell(each.light_error ? times(*each.light_error) : "") +
+                number_cell(times(each.time)) + number_cell(times(each.bytes)) +
+                number_cell(times(each.set_up)) + "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
 std::string view_cell(const run_record& run) {
     return text_cell(run.scene + ", " + run.camera + ", " + run.light);
 }
@@ -185,7 +208,7 @@ ordered_json json_of(const matched_run& each, const results& all) {
 } // namespace
 
 std::string accuracy_section(const results& all) {
-    return "<div class=\"accuracy\">\n" + answer(all) + score_table(all) +
+    return "<div class=\"accuracy\">\n" + answer(all) + score_table(all) + variant_table(all) +
            "<details><summary>Equal quality, view by view</summary>\n" + quality_table(all) +
            "</details>\n<details><summary>Equal time, view by view</summary>\n" + time_table(all) +
            "</details>\n</div>\n";
@@ -219,6 +242,19 @@ ordered_json accuracy_json(const results& all) {
                                   {"bytes", each.bytes},
                                   {"better", each.better},
                                   {"worse", each.worse}});
+    }
+    json["variants"] = ordered_json::array();
+    for (const variant_score& each : score_variants(all.runs)) {
+        json["variants"].push_back(
+            {{"method", each.method},
+             {"variant", each.variant},
+             {"views", each.views},
+             {"wrong", each.wrong},
+             {"light_error",
+              each.light_error ? ordered_json(*each.light_error) : ordered_json(nullptr)},
+             {"frame_time", each.time},
+             {"bytes", each.bytes},
+             {"cpu_setup", each.set_up}});
     }
     json["equal_quality"] = ordered_json::array();
     for (const matched_run& each : match_quality(all.runs, quality_targets(), all.matched)) {

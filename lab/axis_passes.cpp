@@ -26,20 +26,35 @@ float power_steps(const warp_options& options, int cells) {
 
 } // namespace
 
+float least_floor(int cells, table_format format) {
+    // the device computes nodes in float: four times the floor that rounding once needs
+    const float computed = 4.0f * ws::smallest_floor<float, float>(cells);
+    return format == table_format::unorm16
+               ? computed + ws::smallest_floor<float, std::uint16_t>(cells)
+               : computed;
+}
+
 axis_passes::axis_passes(passes& gpu)
     : gpu_(gpu), mixed_(sizeof(std::uint32_t), nullptr, GL_DYNAMIC_COPY) {
     sum_columns_ = gpu.compute("column_sums.comp");
-    build_axis_ = gpu.compute("build_axis.comp");
-    build_power_ = gpu.compute("build_axis.comp", {"WS_BUILD_POWER"});
+}
+
+axis_passes::table_programs& axis_passes::programs(table_format format) {
+    table_programs& found = programs_[static_cast<std::size_t>(format)];
+    if (found.build.id() == 0) {
+        const std::string stored = "WS_TABLE_FORMAT " + image_format(format);
+        found.build = gpu_.compute("build_axis.comp", {stored});
+        found.build_power = gpu_.compute("build_axis.comp", {stored, "WS_BUILD_POWER"});
+    }
+    return found;
 }
 
 void axis_passes::build_functions(const gl::texture& table, const warp_options& options, int cells,
-                                  int radius, int functions) const {
-    const gl::program& build = options.power == 1.0f ? build_axis_ : build_power_;
+                                  int radius, int functions) {
+    const table_programs& of_format = programs(options.format);
+    const gl::program& build = options.power == 1.0f ? of_format.build : of_format.build_power;
     build.set("ws_radius", radius);
-    // the device computes nodes in float: four times the floor that rounding once needs
-    build.set("ws_floor",
-              std::max(options.build.floor, 4.0f * ws::smallest_floor<float, float>(cells)));
+    build.set("ws_floor", std::max(options.build.floor, least_floor(cells, options.format)));
     build.set("ws_power", options.power);
     build.set("ws_power_steps", power_steps(options, cells));
     table.bind_image(1, GL_WRITE_ONLY);
@@ -78,12 +93,14 @@ const gl::texture& axis_passes::smooth(map_resources::tables& warp, const warp_o
 void axis_passes::limit_shear(map_resources::tables& warp, const gl::texture& table,
                               const warp_options& options) {
     const int cells = warp.counts.width();
-    if (limit_shear_.id() == 0) {
-        limit_shear_ = gpu_.compute("shear_limit.comp");
-        mix_ = gpu_.compute("shear_mix.comp");
+    table_programs& of_format = programs(options.format);
+    if (of_format.limit_shear.id() == 0) {
+        const std::string stored = "WS_TABLE_FORMAT " + image_format(options.format);
+        of_format.limit_shear = gpu_.compute("shear_limit.comp", {stored});
+        of_format.mix = gpu_.compute("shear_mix.comp", {stored});
     }
     if (warp.common.width() != cells + 1) {
-        warp.common = gl::texture(GL_R32F, cells + 1, 1);
+        warp.common = gl::texture(internal_format(options.format), cells + 1, 1);
     }
     // a window of all rows around the first
     warp.counts.bind_image(0, GL_READ_ONLY);
@@ -92,12 +109,12 @@ void axis_passes::limit_shear(map_resources::tables& warp, const gl::texture& ta
     mixed_.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
     warp.common.bind_image(2, GL_READ_ONLY);
     table.bind_image(1, GL_READ_ONLY);
-    limit_shear_.set("ws_shear", options.build.shear);
-    limit_shear_.use();
+    of_format.limit_shear.set("ws_shear", options.build.shear);
+    of_format.limit_shear.use();
     glDispatchCompute(static_cast<GLuint>(cells - 1), 1, 1);
     gl::wait_for_writes();
     table.bind_image(1, GL_READ_WRITE);
-    mix_.dispatch(table.width(), table.height());
+    of_format.mix.dispatch(table.width(), table.height());
     gl::wait_for_writes();
 }
 

@@ -149,13 +149,15 @@ std::vector<bias_sample> bias_passes::measure(map_resources& maps, const light_m
     return result;
 }
 
-std::vector<float> bias_passes::light(map_resources& maps, const light_maps& chosen, bool warped,
-                                      const bias_choice& how, const filter_choice& filter,
-                                      const g_buffer& seen, const ws::frustum<double>& camera) {
+void bias_passes::filter(map_resources& maps, const light_maps& chosen, bool warped,
+                         const bias_choice& how, const filter_choice& filter, const g_buffer& seen,
+                         const ws::frustum<double>& camera, bool fresh) {
     const glm::ivec2 size = gpu_.view();
-    gl::texture share(GL_R32F, size.x, size.y);
-    share.clear(glm::vec4(0.0f));
-    share.bind_image(0, GL_WRITE_ONLY);
+    if (share_.id() == 0) {
+        share_ = gl::texture(GL_R32F, size.x, size.y);
+    }
+    share_.clear(glm::vec4(0.0f));
+    share_.bind_image(0, GL_WRITE_ONLY);
     if (has_kernel(filter.kind)) {
         const gl::program& kernel = find(kernel_, "kernel_light.comp", {"KERNEL"}, warped, how);
         kernel.set("kernel_kind", static_cast<int>(filter.kind));
@@ -169,27 +171,29 @@ std::vector<float> bias_passes::light(map_resources& maps, const light_maps& cho
         if (!blur_) {
             blur_ = gpu_.compute("blur.comp");
             passes::set_units(*blur_);
+            blurred_ = gl::texture(GL_R32F, size.x, size.y);
         }
         const glm::dvec3 forward = glm::normalize(camera.forward);
         const glm::vec4 plane(glm::dvec4(forward, -glm::dot(forward, camera.eye)));
+        if (fresh) { // an engine would keep it from the frame before
+            full_blur_depth_ = filter.less_with_depth
+                                   ? full_blur_depth(seen.position.read<glm::vec4>(), plane)
+                                   : std::numeric_limits<float>::max();
+        }
         blur_->set("view_depth_plane", plane);
         blur_->set("ws_blur_edge", 0.01f);
-        blur_->set("ws_blur_full_depth",
-                   filter.less_with_depth ? full_blur_depth(seen.position.read<glm::vec4>(), plane)
-                                          : std::numeric_limits<float>::max());
-        gl::texture other(GL_R32F, size.x, size.y);
+        blur_->set("ws_blur_full_depth", full_blur_depth_);
         for (int i = 0; i < filter.blurs; ++i) {
             for (const glm::ivec2 axis : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
-                share.bind(4);
-                other.bind_image(0, GL_WRITE_ONLY);
+                share_.bind(4);
+                blurred_.bind_image(0, GL_WRITE_ONLY);
                 blur_->set("ws_blur_axis", axis);
                 blur_->dispatch(size.x, size.y);
                 gl::wait_for_writes();
-                std::swap(share, other);
+                std::swap(share_, blurred_);
             }
         }
     }
-    return share.read<float>();
 }
 
 } // namespace lab

@@ -28,10 +28,13 @@ class bias_passes {
     /// What the bias does to each sample.
     std::vector<bias_sample> measure(map_resources& maps, const light_maps& chosen, bool warped,
                                      const bias_choice& how);
-    /// Share of the light that reaches each sample, filtered; samples and camera as in use.
-    std::vector<float> light(map_resources& maps, const light_maps& chosen, bool warped,
-                             const bias_choice& how, const filter_choice& filter,
-                             const g_buffer& seen, const warpshadow::frustum<double>& camera);
+    /// Filters the shadows of all samples; samples and camera as in use.
+    /// @param fresh the view is another than that of the last call: a blur reads its depths
+    void filter(map_resources& maps, const light_maps& chosen, bool warped, const bias_choice& how,
+                const filter_choice& filter, const g_buffer& seen,
+                const warpshadow::frustum<double>& camera, bool fresh);
+    /// Share of the light that reaches each sample, as it was filtered last.
+    [[nodiscard]] std::vector<float> light() const { return share_.read<float>(); }
 
   private:
     /// Programs with and without tables and linear depth; linked when they are first used.
@@ -46,6 +49,8 @@ class bias_passes {
                   bool warped, const bias_choice& how, float radius);
 
     passes& gpu_;
+    gl::texture share_, blurred_;
+    float full_blur_depth_ = 1.0f;
     std::optional<gl::program> draw_linear_, draw_back_, blur_;
     variants test_, measure_, filter_, kernel_;
 };

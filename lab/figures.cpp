@@ -77,21 +77,6 @@ std::vector<cell_plan> plan_of(const std::string& name) {
     return name == "figure6" ? plan_biases() : plan_blurs();
 }
 
-/// Light that is missing or too much, as a mean over the counted samples.
-std::optional<double> mean_light_error(const g_buffer_samples& samples,
-                                       std::span<const std::uint8_t> truth,
-                                       std::span<const float> light) {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        if (samples.position[i].w > 0.5f && samples.n_dot_l[i] > counted_n_dot_l) {
-            sum += std::abs(static_cast<double>(light[i]) - (truth[i] != 0 ? 0.0 : 1.0));
-            ++count;
-        }
-    }
-    return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
-}
-
 } // namespace
 
 figure_defaults defaults_of_figure(const std::string& name) {
@@ -167,7 +152,7 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
                 dark[i] = share[i] < 0.5f ? dark[i] : 0;
             }
             cell.filtered_acne = measure_bias(samples, truth, dark, run.result.biases).acne_ratio;
-            cell.mean_light_error = mean_light_error(samples, truth, share);
+            cell.mean_light_error = measure_filter(samples, truth, share).mean_light;
             shown = shades.shade(share);
         }
         seen.cells.push_back(write(plan.method + "-" + plan.bias + filter_name, shown));

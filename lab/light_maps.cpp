@@ -31,45 +31,81 @@ void check_reach(const scene& world, const light_view& view, ws::status flags) {
     }
 }
 
-ws::frustum<double> face_of(const scene& world, const ws::light<double>& light, int face) {
+// Inputs of a set-up at T.
+template <typename T> ws::light<T> at(const ws::light<double>& light) {
+    return {light.kind, glm::vec<3, T>(light.position), glm::vec<3, T>(light.direction),
+            static_cast<T>(light.cone_angle), light.vertical};
+}
+template <typename T> ws::box3<T> at(const ws::box3<double>& box) {
+    return {glm::vec<3, T>(box.lo), glm::vec<3, T>(box.hi)};
+}
+template <typename T> ws::frustum<T> at(const ws::frustum<double>& camera) {
+    const ws::view_volume<double>& v = camera.volume;
+    return {glm::vec<3, T>(camera.eye),
+            glm::vec<3, T>(camera.right),
+            glm::vec<3, T>(camera.up),
+            glm::vec<3, T>(camera.forward),
+            {static_cast<T>(v.left), static_cast<T>(v.right), static_cast<T>(v.bottom),
+             static_cast<T>(v.top), static_cast<T>(v.near_distance), static_cast<T>(v.far_distance),
+             v.orthographic}};
+}
+
+/// The same steps at float or at double.
+template <typename Steps> light_maps set_up(precision how, Steps steps) {
+    light_maps result = how == precision::in_float ? steps(float{}) : steps(double{});
+    result.at = how;
+    return result;
+}
+
+template <typename T>
+ws::frustum<T> face_of(const scene& world, const ws::light<double>& light, int face) {
     const glm::dvec3 axis = ws::cube_direction(face, glm::dvec2(0.5));
     // a face that looks away from the scene needs a depth range too
     const double far_distance = std::max(farthest_along(world.box, light.position, axis),
                                          near_share * glm::length(world.box.hi - world.box.lo));
-    return ws::face_camera(light.position, face, ws::cube_api::opengl, far_distance * near_share,
-                           far_distance)
+    return ws::face_camera(glm::vec<3, T>(light.position), face, ws::cube_api::opengl,
+                           static_cast<T>(far_distance * near_share), static_cast<T>(far_distance))
         .value;
 }
 
-glm::dmat4 matrix_of(const ws::frustum<double>& camera) {
+template <typename T> glm::mat<4, 4, T> matrix_of(const ws::frustum<T>& camera) {
     return ws::projection_matrix(camera.volume, ws::clip::opengl) *
            ws::view_matrix(camera, ws::clip::opengl);
 }
 
 /// The cone around the pyramid of a cube face.
-ws::light<double> face_beam(const ws::frustum<double>& face) {
+template <typename T> ws::light<T> face_beam(const ws::frustum<T>& face) {
     const double corner = 2.0 * std::atan(std::numbers::sqrt2);
-    return {ws::light_kind::spot, face.eye, face.forward, corner};
+    return {ws::light_kind::spot, face.eye, face.forward, static_cast<T>(corner)};
+}
+
+template <typename T>
+ws::focus_result focus_at(const scene& world, const ws::frustum<double>& camera,
+                          const ws::light<T>& light) {
+    return ws::focus(ws::focus_input<T>{at<T>(camera), light, at<T>(world.box), at<T>(world.box)});
 }
 
 /// The part of a cube face that the receivers in view take up; not used if there is none.
+template <typename T>
 light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
                        const ws::light<double>& light, int face, int map_size) {
-    const ws::frustum<double> face_view = face_of(world, light, face);
-    const ws::focus_result seen = focus_on(world, camera, face_beam(face_view));
-    light_map result{matrix_of(face_view), seen.receivers.count > 0};
+    const ws::frustum<T> face_view = face_of<T>(world, light, face);
+    const ws::focus_result seen = focus_at(world, camera, face_beam(face_view));
+    light_map result{glm::dmat4(matrix_of(face_view)), seen.receivers.count > 0};
     if (seen.footprint_count == 0) {
         return result; // nothing in view, or no bounds: the whole face
     }
+    const glm::dvec3 right(face_view.right);
+    const glm::dvec3 up(face_view.up);
+    const glm::dvec3 forward(face_view.forward);
     glm::dvec2 lo(1.0);
     glm::dvec2 hi(0.0);
     for (std::size_t i = 0; i < seen.footprint_count; ++i) {
         const glm::dvec3 ray = seen.view.forward + seen.footprint[i].x * seen.view.right +
                                seen.footprint[i].y * seen.view.up;
-        const double along = glm::dot(ray, face_view.forward);
+        const double along = glm::dot(ray, forward);
         const glm::dvec2 p =
-            0.5 +
-            0.5 * glm::dvec2(glm::dot(ray, face_view.right), glm::dot(ray, face_view.up)) / along;
+            0.5 + 0.5 * glm::dvec2(glm::dot(ray, right), glm::dot(ray, up)) / along;
         lo = glm::min(lo, p);
         hi = glm::max(hi, p);
     }
@@ -81,7 +117,8 @@ light_map cropped_face(const scene& world, const ws::frustum<double>& camera,
         ws::map_rect<double> rect{lo, hi};
         ws::widen_side(lo.x, hi.x, margin, rect.lo.x, rect.hi.x);
         ws::widen_side(lo.y, hi.y, margin, rect.lo.y, rect.hi.y);
-        result.matrix = ws::crop_matrix(result.matrix, rect).matrix;
+        const ws::map_rect<T> rounded{glm::vec<2, T>(rect.lo), glm::vec<2, T>(rect.hi)};
+        result.matrix = glm::dmat4(ws::crop_matrix(matrix_of(face_view), rounded).matrix);
     }
     return result;
 }
@@ -101,11 +138,163 @@ ws::frustum<double> turning_camera(const scene& world, const ws::frustum<double>
     return turning;
 }
 
-ws::stable_options<double> stable_fits(int map_size) {
-    ws::stable_options<double> options;
+template <typename T> ws::stable_options<T> stable_fits(int map_size) {
+    ws::stable_options<T> options;
     options.map_size = map_size;
     options.clip = ws::clip::opengl;
     return options;
+}
+
+template <typename T> light_maps whole_scene_at(const scene& world, const light_view& view) {
+    const ws::light<double>& light = view.light;
+    light_maps result;
+    if (light.kind == ws::light_kind::point) {
+        result.choice = map_choice::cube_face;
+        for (int face = 0; face < faces; ++face) {
+            result.maps.push_back({glm::dmat4(matrix_of(face_of<T>(world, light, face))), true});
+        }
+        return result;
+    }
+    ws::light_matrix_result<T> built;
+    if (light.kind == ws::light_kind::directional) {
+        built = ws::directional_light_matrix(at<T>(light), at<T>(world.box), ws::clip::opengl);
+    } else {
+        const double far_distance =
+            farthest_along(world.box, light.position, glm::normalize(light.direction));
+        built = ws::spot_light_matrix(at<T>(light), static_cast<T>(far_distance * near_share),
+                                      static_cast<T>(far_distance), ws::clip::opengl);
+    }
+    check_reach(world, view, built.flags);
+    result.maps.push_back({glm::dmat4(built.matrix), true});
+    return result;
+}
+
+template <typename T>
+light_maps minimal_at(const scene& world, const ws::frustum<double>& camera, const light_view& view,
+                      int map_size, light_memory& memory) {
+    const ws::light<double>& light = view.light;
+    light_maps result;
+    if (light.kind == ws::light_kind::point) {
+        result.choice = map_choice::cube_face;
+        for (int face = 0; face < faces; ++face) {
+            result.maps.push_back(cropped_face<T>(world, camera, light, face, map_size));
+        }
+        return result;
+    }
+    const ws::focus_result seen = focus_at(world, camera, at<T>(light));
+    result.flags = seen.flags;
+    if (seen.footprint_count == 0) {
+        // no receiver, or no bound for them: the map of everything serves
+        const light_maps whole = whole_scene_at<T>(world, view);
+        result.maps = whole.maps;
+        result.flags |= whole.flags;
+        return result;
+    }
+    ws::fit_options<T> options;
+    options.frame = ws::fit_frame::rotated_minimal;
+    options.clip = ws::clip::opengl;
+    options.map_size = glm::ivec2(map_size);
+    options.margin = T(0.5); // as the desired view has: no sample on the border
+    if (light.kind == ws::light_kind::spot) {
+        options.least_near =
+            static_cast<T>(near_share * farthest_along(world.box, light.position,
+                                                       glm::normalize(light.direction)));
+    }
+    const ws::shadow_fit<T> fit = ws::minimal_shadow_frustum(seen, options, memory.fit);
+    result.flags |= fit.flags;
+    result.angle = static_cast<double>(fit.angle);
+    result.maps.push_back({glm::dmat4(fit.matrix), true});
+    return result;
+}
+
+template <typename T>
+light_maps stable_at(const scene& world, const ws::frustum<double>& camera, const light_view& view,
+                     int map_size) {
+    const ws::stable_result<T> fit =
+        ws::stable_fit(at<T>(turning_camera(world, camera)), at<T>(view.light), at<T>(world.box),
+                       stable_fits<T>(map_size));
+    check_reach(world, view, fit.flags);
+    light_maps result;
+    result.maps.push_back({glm::dmat4(fit.matrix), true});
+    result.flags = fit.flags;
+    return result;
+}
+
+template <typename T>
+light_maps cascades_at(const scene& world, const ws::frustum<double>& camera,
+                       const light_view& view, int count, int map_size) {
+    const auto slices = static_cast<std::size_t>(count);
+    std::vector<T> splits(slices + 1);
+    std::vector<ws::cascade<T>> cascades(slices);
+    ws::cascade_options<T> options; // of lambda 1/2, without a blend
+    options.fit = stable_fits<T>(map_size);
+    light_maps result;
+    result.flags =
+        ws::fit_cascades(at<T>(turning_camera(world, camera)), at<T>(view.light), at<T>(world.box),
+                         options, std::span<T>(splits), std::span<ws::cascade<T>>(cascades))
+            .flags;
+    for (const ws::cascade<T>& each : cascades) {
+        check_reach(world, view, each.fit.flags);
+        result.maps.push_back({glm::dmat4(each.fit.matrix), true});
+        result.flags |= each.fit.flags;
+    }
+    split_by_depth(result, camera, std::vector<double>(splits.begin() + 1, splits.end() - 1));
+    return result;
+}
+
+template <typename T>
+light_maps lispsm_at(const scene& world, const ws::frustum<double>& camera,
+                     const light_view& view) {
+    light_maps result = whole_scene_at<T>(world, view);
+    const ws::frustum<T> seen_by = at<T>(camera);
+    for (std::size_t i = 0; i < result.maps.size(); ++i) {
+        light_map& map = result.maps[i];
+        ws::light<T> light = at<T>(view.light);
+        if (light.kind == ws::light_kind::point) {
+            light = face_beam(face_of<T>(world, view.light, static_cast<int>(i)));
+        }
+        const ws::focus_result seen = focus_at(world, camera, light);
+        result.flags |= seen.flags;
+        map.used = seen.receivers.count > 0 || view.light.kind != ws::light_kind::point;
+        if (seen.footprint_count == 0) {
+            continue; // no receiver, or no bound for them: the map of everything serves
+        }
+        std::vector<glm::vec<3, T>> body;
+        std::vector<glm::vec<3, T>> casters;
+        for (std::size_t k = 0; k < seen.receivers.count; ++k) {
+            body.emplace_back(seen.receivers.vertices[k]);
+        }
+        // casters reach to the light itself: depth begins at a share of the distance, as elsewhere
+        const bool placed = light.kind != ws::light_kind::directional;
+        const glm::vec<3, T> axis = glm::normalize(light.direction);
+        const glm::vec<3, T> apex = light.position - seen_by.eye;
+        const T least = static_cast<T>(
+            near_share * farthest_along(world.box, glm::dvec3(light.position), glm::dvec3(axis)));
+        for (std::size_t k = 0; k < seen.casters.count; ++k) {
+            const glm::vec<3, T> caster(seen.casters.vertices[k]);
+            if (!placed || glm::dot(caster - apex, axis) >= least) {
+                casters.push_back(caster);
+            }
+        }
+        for (std::size_t k = 0; placed && k < body.size(); ++k) {
+            const T along = glm::dot(body[k] - apex, axis);
+            if (along > least) {
+                casters.push_back(apex + (body[k] - apex) * (least / along));
+            }
+        }
+        ws::lispsm_options<T> options;
+        options.casters = casters;
+        const ws::lispsm_result<T> warped = ws::lispsm(
+            seen_by, light, std::span<const glm::vec<3, T>>(body), ws::clip::opengl, options);
+        result.flags |= warped.flags;
+        if (!ws::any(warped.flags, ws::status::light_inside_body | ws::status::unbounded |
+                                       ws::status::invalid_input | ws::status::out_of_range)) {
+            map.matrix =
+                glm::dmat4(warped.matrix * glm::translate(glm::mat<4, 4, T>(T(1)), -seen_by.eye));
+            map.linear = {warped.depth_scale, warped.depth_shift, warped.depth_centre};
+        }
+    }
+    return result;
 }
 
 } // namespace
@@ -147,150 +336,36 @@ glm::mat4 camera_matrix(const ws::frustum<double>& camera) {
 
 ws::focus_result focus_on(const scene& world, const ws::frustum<double>& camera,
                           const ws::light<double>& light) {
-    return ws::focus(ws::focus_input<double>{camera, light, world.box, world.box});
+    return focus_at(world, camera, light);
 }
 
-light_maps whole_scene_maps(const scene& world, const light_view& view) {
-    const ws::light<double>& light = view.light;
-    light_maps result;
-    if (light.kind == ws::light_kind::point) {
-        result.choice = map_choice::cube_face;
-        for (int face = 0; face < faces; ++face) {
-            result.maps.push_back({matrix_of(face_of(world, light, face)), true});
-        }
-        return result;
-    }
-    ws::light_matrix_result<double> built;
-    if (light.kind == ws::light_kind::directional) {
-        built = ws::directional_light_matrix(light, world.box, ws::clip::opengl);
-    } else {
-        const double far_distance =
-            farthest_along(world.box, light.position, glm::normalize(light.direction));
-        built =
-            ws::spot_light_matrix(light, far_distance * near_share, far_distance, ws::clip::opengl);
-    }
-    check_reach(world, view, built.flags);
-    result.maps.push_back({built.matrix, true});
-    return result;
+light_maps whole_scene_maps(const scene& world, const light_view& view, precision at) {
+    return set_up(at, [&]<typename T>(T /*type*/) { return whole_scene_at<T>(world, view); });
 }
 
 light_maps minimal_maps(const scene& world, const ws::frustum<double>& camera,
-                        const light_view& view, int map_size, light_memory& memory) {
-    const ws::light<double>& light = view.light;
-    light_maps result;
-    if (light.kind == ws::light_kind::point) {
-        result.choice = map_choice::cube_face;
-        for (int face = 0; face < faces; ++face) {
-            result.maps.push_back(cropped_face(world, camera, light, face, map_size));
-        }
-        return result;
-    }
-    const ws::focus_result seen = focus_on(world, camera, light);
-    result.flags = seen.flags;
-    if (seen.footprint_count == 0) {
-        // no receiver, or no bound for them: the map of everything serves
-        const light_maps whole = whole_scene_maps(world, view);
-        result.maps = whole.maps;
-        result.flags |= whole.flags;
-        return result;
-    }
-    ws::fit_options<double> options;
-    options.frame = ws::fit_frame::rotated_minimal;
-    options.clip = ws::clip::opengl;
-    options.map_size = glm::ivec2(map_size);
-    options.margin = 0.5; // as the desired view has: no sample on the border
-    if (light.kind == ws::light_kind::spot) {
-        options.least_near =
-            near_share * farthest_along(world.box, light.position, glm::normalize(light.direction));
-    }
-    const ws::shadow_fit<double> fit = ws::minimal_shadow_frustum(seen, options, memory.fit);
-    result.flags |= fit.flags;
-    result.angle = fit.angle;
-    result.maps.push_back({fit.matrix, true});
-    return result;
+                        const light_view& view, int map_size, light_memory& memory, precision at) {
+    return set_up(at, [&]<typename T>(T /*type*/) {
+        return minimal_at<T>(world, camera, view, map_size, memory);
+    });
 }
 
 light_maps stable_maps(const scene& world, const ws::frustum<double>& camera,
-                       const light_view& view, int map_size) {
-    const ws::stable_result<double> fit =
-        ws::stable_fit(turning_camera(world, camera), view.light, world.box, stable_fits(map_size));
-    check_reach(world, view, fit.flags);
-    light_maps result;
-    result.maps.push_back({fit.matrix, true});
-    result.flags = fit.flags;
-    return result;
+                       const light_view& view, int map_size, precision at) {
+    return set_up(
+        at, [&]<typename T>(T /*type*/) { return stable_at<T>(world, camera, view, map_size); });
 }
 
 light_maps cascade_maps(const scene& world, const ws::frustum<double>& camera,
-                        const light_view& view, int count, int map_size) {
-    const auto slices = static_cast<std::size_t>(count);
-    std::vector<double> splits(slices + 1);
-    std::vector<ws::cascade<double>> cascades(slices);
-    ws::cascade_options<double> options; // of lambda 1/2, without a blend
-    options.fit = stable_fits(map_size);
-    light_maps result;
-    result.flags =
-        ws::fit_cascades(turning_camera(world, camera), view.light, world.box, options,
-                         std::span<double>(splits), std::span<ws::cascade<double>>(cascades))
-            .flags;
-    for (const ws::cascade<double>& each : cascades) {
-        check_reach(world, view, each.fit.flags);
-        result.maps.push_back({each.fit.matrix, true});
-        result.flags |= each.fit.flags;
-    }
-    split_by_depth(result, camera, {splits.begin() + 1, splits.end() - 1});
-    return result;
+                        const light_view& view, int count, int map_size, precision at) {
+    return set_up(at, [&]<typename T>(T /*type*/) {
+        return cascades_at<T>(world, camera, view, count, map_size);
+    });
 }
 
 light_maps lispsm_maps(const scene& world, const ws::frustum<double>& camera,
-                       const light_view& view) {
-    light_maps result = whole_scene_maps(world, view);
-    for (std::size_t i = 0; i < result.maps.size(); ++i) {
-        light_map& map = result.maps[i];
-        ws::light<double> light = view.light;
-        if (light.kind == ws::light_kind::point) {
-            light = face_beam(face_of(world, light, static_cast<int>(i)));
-        }
-        const ws::focus_result seen = focus_on(world, camera, light);
-        result.flags |= seen.flags;
-        map.used = seen.receivers.count > 0 || view.light.kind != ws::light_kind::point;
-        if (seen.footprint_count == 0) {
-            continue; // no receiver, or no bound for them: the map of everything serves
-        }
-        std::vector<glm::dvec3> body;
-        std::vector<glm::dvec3> casters;
-        for (std::size_t k = 0; k < seen.receivers.count; ++k) {
-            body.emplace_back(seen.receivers.vertices[k]);
-        }
-        // casters reach to the light itself: depth begins at a share of the distance, as elsewhere
-        const bool placed = light.kind != ws::light_kind::directional;
-        const glm::dvec3 axis = glm::normalize(light.direction);
-        const glm::dvec3 apex = light.position - camera.eye;
-        const double least = near_share * farthest_along(world.box, light.position, axis);
-        for (std::size_t k = 0; k < seen.casters.count; ++k) {
-            const glm::dvec3 caster(seen.casters.vertices[k]);
-            if (!placed || glm::dot(caster - apex, axis) >= least) {
-                casters.push_back(caster);
-            }
-        }
-        for (std::size_t k = 0; placed && k < body.size(); ++k) {
-            const double along = glm::dot(body[k] - apex, axis);
-            if (along > least) {
-                casters.push_back(apex + (body[k] - apex) * (least / along));
-            }
-        }
-        ws::lispsm_options<double> options;
-        options.casters = casters;
-        const ws::lispsm_result<double> warped =
-            ws::lispsm(camera, light, std::span<const glm::dvec3>(body), ws::clip::opengl, options);
-        result.flags |= warped.flags;
-        if (!ws::any(warped.flags, ws::status::light_inside_body | ws::status::unbounded |
-                                       ws::status::invalid_input | ws::status::out_of_range)) {
-            map.matrix = warped.matrix * glm::translate(glm::dmat4(1.0), -camera.eye);
-            map.linear = {warped.depth_scale, warped.depth_shift, warped.depth_centre};
-        }
-    }
-    return result;
+                       const light_view& view, precision at) {
+    return set_up(at, [&]<typename T>(T /*type*/) { return lispsm_at<T>(world, camera, view); });
 }
 
 void split_by_depth(light_maps& maps, const ws::frustum<double>& camera,

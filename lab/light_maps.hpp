@@ -24,6 +24,10 @@ enum class map_choice {
     hemisphere = 3  ///< front and back of a paraboloid pair, see lab/omni.hpp
 };
 
+/// Type of what the host hands to the library and takes from it between the steps of a set-up; the
+/// library itself computes in double wherever that matters.
+enum class precision { in_double, in_float };
+
 /// One shadow map.
 struct light_map {
     glm::dmat4 matrix{1.0}; ///< clip space (OpenGL) from the world, before a crop on the device
@@ -38,6 +42,7 @@ struct light_maps {
     glm::dvec4 depth_plane{0.0}; ///< view depth of a world position is dot(plane, (p, 1))
     std::vector<double> splits;  ///< view depths at which the next map begins; one less than maps
     double angle = 0.0;          ///< of the map's sides to the axes of the light, radians
+    precision at = precision::in_double; ///< of the steps that follow
     warpshadow::status flags = warpshadow::status::ok;
 };
 
@@ -67,27 +72,30 @@ warpshadow::focus_result focus_on(const scene& world, const warpshadow::frustum<
 
 /// `sm`: maps of all that the light reaches in the scene's box; a point light has six.
 /// @throws bad_input when the light does not reach the scene.
-light_maps whole_scene_maps(const scene& world, const light_view& view);
+light_maps whole_scene_maps(const scene& world, const light_view& view,
+                            precision at = precision::in_double);
 
 /// `min-sm` (Milet et al. 2015, §3.2): the minimal shadow frustum of what the camera can see. The
 /// faces of a point light's cube are cropped, and left out where no receiver is in view.
 /// @throws bad_input when the light does not reach the scene.
 light_maps minimal_maps(const scene& world, const warpshadow::frustum<double>& camera,
-                        const light_view& view, int map_size, light_memory& memory);
+                        const light_view& view, int map_size, light_memory& memory,
+                        precision at = precision::in_double);
 
 /// `stable`: the fit whose texels stay where they are while the camera turns and moves; sunlight.
 light_maps stable_maps(const scene& world, const warpshadow::frustum<double>& camera,
-                       const light_view& view, int map_size);
+                       const light_view& view, int map_size, precision at = precision::in_double);
 
 /// `pssm` (Zhang et al. 2006): the same for each of `count` slices of the view, practical splits of
 /// which no part depends on where the camera looks; sunlight.
 light_maps cascade_maps(const scene& world, const warpshadow::frustum<double>& camera,
-                        const light_view& view, int count, int map_size);
+                        const light_view& view, int count, int map_size,
+                        precision at = precision::in_double);
 
 /// `lispsm` (Wimmer et al. 2004, Scherzer 2005): the body that the camera sees, warped by one
 /// matrix; face by face for a point light.
 light_maps lispsm_maps(const scene& world, const warpshadow::frustum<double>& camera,
-                       const light_view& view);
+                       const light_view& view, precision at = precision::in_double);
 
 /// A map for each of several slices of the view: the one there is serves all, unless they have
 /// theirs.

@@ -152,13 +152,17 @@ void run_lab(const lab::options& wanted) {
                     if (!wanted.preset.empty()) {
                         break; // a figure has methods of its own
                     }
-                    if (const auto reason = lab::why_not(method, light)) {
+                    auto reason = lab::why_not(method, light);
+                    if (!reason) {
+                        reason = lab::why_not(method, wanted.set_up);
+                    }
+                    if (reason) {
                         all.left_out.push_back({work.world.name, light.label, method, *reason});
                         continue;
                     }
                     for (const lab::bias_choice& bias : wanted.biases) {
-                        if (const auto reason = lab::why_not(method, light, bias)) {
-                            all.left_out.push_back({work.world.name, light.label, method, *reason});
+                        if (const auto why = lab::why_not(method, light, bias)) {
+                            all.left_out.push_back({work.world.name, light.label, method, *why});
                         }
                     }
                 }

@@ -1,5 +1,7 @@
 #include "lab/measure.hpp"
 
+#include <cmath>
+
 namespace lab {
 
 std::optional<double> comparison::ratio(std::size_t part) const {
@@ -7,6 +9,27 @@ std::optional<double> comparison::ratio(std::size_t part) const {
         return std::nullopt;
     }
     return static_cast<double>(part) / static_cast<double>(samples);
+}
+
+filter_errors measure_filter(const g_buffer_samples& samples, std::span<const std::uint8_t> truth,
+                             std::span<const float> light) {
+    double sum = 0.0;
+    std::size_t wrong = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        if (samples.position[i].w > 0.5f && samples.n_dot_l[i] > counted_n_dot_l) {
+            const double error =
+                std::abs(static_cast<double>(light[i]) - (truth[i] != 0 ? 0.0 : 1.0));
+            sum += error;
+            wrong += error > 0.5 ? 1 : 0;
+            ++count;
+        }
+    }
+    if (count == 0) {
+        return {};
+    }
+    const auto all = static_cast<double>(count);
+    return {sum / all, static_cast<double>(wrong) / all};
 }
 
 comparison compare(const g_buffer_samples& samples, std::span<const std::uint8_t> truth,

@@ -28,6 +28,15 @@ struct comparison {
     [[nodiscard]] std::optional<double> ratio(std::size_t part) const;
 };
 
+/// What a filter leaves wrong, over the samples that `compare` counts; nothing when there are none.
+struct filter_errors {
+    std::optional<double> mean_light; ///< light that is missing or too much
+    std::optional<double> wrong;      ///< samples that are wrong by more than half of the light
+};
+
+filter_errors measure_filter(const g_buffer_samples& samples, std::span<const std::uint8_t> truth,
+                             std::span<const float> light);
+
 comparison compare(const g_buffer_samples& samples, std::span<const std::uint8_t> truth,
                    std::span<const std::uint8_t> shadowed);
 

@@ -40,7 +40,7 @@ map_resources resources_for(const method& how, const view_request& request, std:
     const warp_options options = request.tables.over(how.tables);
     const int size = size_of_maps(how, request.map_size);
     const int cells = how.warp ? std::min(options.tables, size) : 0;
-    return {size, maps, cells, options.rectilinear ? 1 : cells};
+    return {size, maps, cells, options.rectilinear ? 1 : cells, options.format};
 }
 
 method_frames::method_frames(const scene& world, glm::ivec2 view) : gpu(world, view), seen(view) {}
@@ -49,22 +49,22 @@ light_maps method_frames::choose_maps(const method& how, const view_request& req
                                       light_memory& memory) const {
     const scene& world = gpu.world();
     if (how.base == map_base::whole_scene) {
-        return whole_scene_maps(world, request.light);
+        return whole_scene_maps(world, request.light, request.set_up);
     }
     const ws::frustum<double> camera = camera_frustum(world, request.camera, gpu.view());
     if (how.base == map_base::all_around) {
         return omni_maps(world, std::span(&camera, 1), request.light, how.omni);
     }
     if (how.base == map_base::stable) {
-        return stable_maps(world, camera, request.light, request.map_size);
+        return stable_maps(world, camera, request.light, request.map_size, request.set_up);
     }
     if (how.base == map_base::cascades) {
         return cascade_maps(world, camera, request.light, how.partitions,
-                            size_of_maps(how, request.map_size));
+                            size_of_maps(how, request.map_size), request.set_up);
     }
-    return how.base == map_base::lispsm
-               ? lispsm_maps(world, camera, request.light)
-               : minimal_maps(world, camera, request.light, request.map_size, memory);
+    return how.base == map_base::lispsm ? lispsm_maps(world, camera, request.light, request.set_up)
+                                        : minimal_maps(world, camera, request.light,
+                                                       request.map_size, memory, request.set_up);
 }
 
 light_maps method_frames::frame(const method& how, const view_request& request,
@@ -123,13 +123,22 @@ light_maps method_frames::frame(const method& how, const view_request& request,
             });
         }
     }
-    gpu.timed_pass("shadow test", [&] {
-        if (request.bias) {
-            biased.test(maps, chosen, how.warp, *request.bias);
-        } else {
-            test(how, request.light, maps, chosen);
-        }
-    });
+    const bool filters = request.filter.kind != shadow_filter::none && !how.omni.hemispheres;
+    if (!filters || count) { // a filter takes the place of the test, whose answers stay
+        gpu.timed_pass("shadow test", [&] {
+            if (request.bias) {
+                biased.test(maps, chosen, how.warp, *request.bias);
+            } else {
+                test(how, request.light, maps, chosen);
+            }
+        });
+    }
+    if (filters) {
+        gpu.timed_pass("filter", [&] {
+            biased.filter(maps, chosen, how.warp, request.bias.value_or(bias_choice{}),
+                          request.filter, seen, camera, count);
+        });
+    }
     return chosen;
 }
 
@@ -241,16 +250,28 @@ void method_frames::split(const method& how, const ws::frustum<double>& camera,
 
 void method_frames::fit(ws::light_kind kind, std::size_t index, ws::projective_state<double>& bend,
                         light_maps& chosen) {
+    if (chosen.at == precision::in_float) {
+        fit_at<float>(kind, index, bend, chosen);
+    } else {
+        fit_at<double>(kind, index, bend, chosen);
+    }
+}
+
+template <typename T>
+void method_frames::fit_at(ws::light_kind kind, std::size_t index,
+                           ws::projective_state<double>& bend, light_maps& chosen) {
     const std::vector<std::uint32_t> counts = gpu.histogram(index, histogram_cells);
     const auto begin = std::chrono::steady_clock::now();
-    const ws::projective_result<double> fitted = ws::fit_projective<double>(
-        std::span<const std::uint32_t>(counts), histogram_cells, histogram_cells, {}, bend);
+    const ws::projective_result<T> fitted = ws::fit_projective<T>(
+        std::span<const std::uint32_t>(counts), histogram_cells, histogram_cells, {},
+        {glm::vec<2, T>(bend.bend), static_cast<T>(bend.angle), bend.turned, bend.started});
     const std::chrono::duration<double, std::micro> elapsed =
         std::chrono::steady_clock::now() - begin;
     fit_us.push_back(elapsed.count());
-    bend = fitted.state;
+    const ws::projective_state<T>& next = fitted.state;
+    bend = {glm::dvec2(next.bend), static_cast<double>(next.angle), next.turned, next.started};
     chosen.flags |= fitted.flags;
-    gpu.warp_map(index, ws::projective_matrix(fitted.map, ws::clip::opengl, kind));
+    gpu.warp_map(index, glm::dmat4(ws::projective_matrix(fitted.map, ws::clip::opengl, kind)));
     const auto centre = ws::projective_depth<double>(kind, ws::clip::opengl);
     chosen.maps[index].linear = {1.0, centre, centre};
 }

@@ -96,6 +96,9 @@ struct method_frames {
     /// Fits a projective warp to the lit samples of one map.
     void fit(warpshadow::light_kind kind, std::size_t index,
              warpshadow::projective_state<double>& bend, light_maps& chosen);
+    template <typename T>
+    void fit_at(warpshadow::light_kind kind, std::size_t index,
+                warpshadow::projective_state<double>& bend, light_maps& chosen);
 };
 
 } // namespace lab

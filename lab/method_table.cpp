@@ -178,6 +178,14 @@ std::optional<std::string> why_not(std::string_view name, const light_view& ligh
     return std::nullopt;
 }
 
+std::optional<std::string> why_not(std::string_view name, precision set_up) {
+    if (set_up == precision::in_float && has_maps(name) &&
+        find_method(name).base == map_base::all_around) {
+        return "cubes and paraboloids are set up in double";
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string> why_not(std::string_view name, const light_view& light,
                                    const bias_choice& bias) {
     if (!has_maps(name)) {

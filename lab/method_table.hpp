@@ -58,6 +58,9 @@ const method& find_method(std::string_view name);
 /// Why the method does not apply to the light, or nothing when it does.
 [[nodiscard]] std::optional<std::string> why_not(std::string_view name, const light_view& light);
 
+/// Why a method cannot be set up at a precision, or nothing when it can.
+[[nodiscard]] std::optional<std::string> why_not(std::string_view name, precision set_up);
+
 /// Why a bias does not apply to a method that applies to the light, or nothing when it does.
 [[nodiscard]] std::optional<std::string> why_not(std::string_view name, const light_view& light,
                                                  const bias_choice& bias);

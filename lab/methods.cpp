@@ -88,10 +88,9 @@ struct renderer::state : method_frames {
             const std::string suffix = single ? "" : "-" + std::to_string(i);
             if (how.warp) {
                 const map_resources::tables& warp = maps.warps[i];
-                for (named_picture& each :
-                     warp_pictures({maps.size, warp.counts.width(), warp.rows.height(),
-                                    warp.rows.read<float>(), warp.columns.read<float>(),
-                                    warp.first_counts, warp.second_counts})) {
+                for (named_picture& each : warp_pictures(
+                         {maps.size, warp.counts.width(), warp.rows.height(), nodes_of(warp.rows),
+                          nodes_of(warp.columns), warp.first_counts, warp.second_counts})) {
                     each.name += suffix;
                     result.push_back(std::move(each));
                 }
@@ -194,9 +193,7 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         result.biases = s.biased.measure(maps, chosen, how.warp, *request.bias);
     }
     if (request.filter.kind != shadow_filter::none && !how.omni.hemispheres) {
-        result.light = s.biased.light(maps, chosen, how.warp, request.bias.value_or(bias_choice{}),
-                                      request.filter, s.seen,
-                                      camera_frustum(s.gpu.world(), request.camera, s.gpu.view()));
+        result.light = s.biased.light();
     }
     result.bytes = maps.bytes();
     if (how.warp) {

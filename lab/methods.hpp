@@ -36,6 +36,7 @@ struct view_request {
     const ray_tracer* rays = nullptr;                 ///< for maps without a rasteriser
     warp_wishes tables = {};                          ///< for methods with warp tables
     const std::vector<std::uint8_t>* truth = nullptr; ///< for methods that are told it
+    precision set_up = precision::in_double;          ///< of the steps on the host
 };
 
 /// View samples, row 0 at the bottom of the picture.

@@ -71,7 +71,7 @@ glm::dvec2 finest_of(const map_resources& maps, const light_maps& chosen,
                      const warp_options& options) {
     glm::dvec2 finest(maps.size);
     const auto along = [&](const gl::texture& table) {
-        const std::vector<float> nodes = table.read<float>();
+        const std::vector<float> nodes = nodes_of(table);
         const ws::table_view<float> view{nodes, table.width() - 1, table.height()};
         return static_cast<double>(ws::maximum_effective_resolution(view, maps.size));
     };

@@ -154,6 +154,10 @@ std::optional<options> parse_options(int argc, const char* const* argv,
                    "Shadows in the pictures, see below; wrong pixels are counted without (none)");
     list("--raster", rasters,
          "Comma-separated ways to draw maps with tables, to compare (exact); see below");
+    std::string set_up;
+    app.add_option("--setup", set_up,
+                   "Type of matrices and fits on the host, float or double, which all are rounded "
+                   "to float for the device (double)");
     warp_arguments tables;
     add_warp_arguments(app, tables);
     app.add_option("--preset", result.preset,
@@ -201,6 +205,15 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         }
     }
     result.tables = warp_wishes_of(tables);
+    if (!set_up.empty()) {
+        if (set_up != "float" && set_up != "double") {
+            throw bad_input("--setup wants float or double, not '" + set_up + "'");
+        }
+        if (!result.preset.empty()) {
+            throw bad_input("--preset knows no --setup");
+        }
+        result.set_up = set_up == "float" ? precision::in_float : precision::in_double;
+    }
 
     const auto replace_if_given = [](std::vector<std::string>& target,
                                      const std::vector<std::string>& given) {

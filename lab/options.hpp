@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lab/bias.hpp"
+#include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
 #include "lab/warp_options.hpp"
 #include "lab/warped_raster.hpp"
@@ -16,13 +17,15 @@
 
 namespace lab {
 
-/// One method with tables of another kind than all others.
-struct table_variant {
+/// One method at one size with something else than all others have.
+struct run_variant {
     std::string method;
-    std::string name; ///< of the variant
+    std::string name; ///< of what differs
     int map;
-    warp_wishes tables;
-    std::optional<raster_choice> raster;
+    warp_wishes tables = {}; ///< in place of those of the command line, as is what follows
+    std::optional<raster_choice> raster = std::nullopt;
+    std::optional<filter_choice> filter = std::nullopt;
+    std::optional<precision> set_up = std::nullopt;
 };
 
 /// A light of one scene alone.
@@ -41,14 +44,15 @@ struct options {
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;
-    std::vector<bias_choice> biases;     ///< to be compared; none: the exact test, not measured
-    filter_choice filter;                ///< of the shadows in pictures
-    std::vector<raster_choice> rasters;  ///< of maps with tables, to be compared; none: the default
-    warp_wishes tables;                  ///< for methods with warp tables
-    std::string arguments;               ///< the command line as it was given
-    std::string sweep;                   ///< "short" or "full", see lab/sweep.hpp, or none
-    int rounds = 1;                      ///< in which frames are timed, all methods in each
-    std::vector<table_variant> variants; ///< to be run besides the methods
+    std::vector<bias_choice> biases;    ///< to be compared; none: the exact test, not measured
+    filter_choice filter;               ///< of the shadows in pictures
+    std::vector<raster_choice> rasters; ///< of maps with tables, to be compared; none: the default
+    warp_wishes tables;                 ///< for methods with warp tables
+    std::string arguments;              ///< the command line as it was given
+    std::string sweep;                  ///< "short" or "full", see lab/sweep.hpp, or none
+    int rounds = 1;                     ///< in which frames are timed, all methods in each
+    precision set_up = precision::in_double;  ///< of matrices and fits on the host
+    std::vector<run_variant> variants;        ///< to be run besides the methods
     std::vector<light_of_scene> point_lights; ///< besides the lights
     int pictured = 0;                         ///< size of the maps whose pictures are kept; 0: all
     std::string preset;                       ///< a figure to redo, see lab/figures.hpp, or none

@@ -2,6 +2,8 @@
 
 #include "lab/shaders.hpp"
 
+#include <warpshadow/warp.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -59,18 +61,38 @@ g_buffer::g_buffer(glm::ivec2 view)
     : position(GL_RGBA32F, view.x, view.y), normal(GL_RGBA32F, view.x, view.y),
       depth(GL_DEPTH_COMPONENT32F, view.x, view.y), target({&position, &normal}, &depth) {}
 
-map_resources::tables::tables(int size, int cells, int functions)
-    : counts(GL_R32UI, cells, cells), rows(GL_R32F, cells + 1, functions),
-      columns(GL_R32F, cells + 1, functions), centres(GL_RG32F, size, size) {}
+GLenum internal_format(table_format format) {
+    return format == table_format::unorm16 ? GL_R16 : GL_R32F;
+}
 
-map_resources::map_resources(int map_size, std::size_t maps, int cells, int functions)
+std::string image_format(table_format format) {
+    return format == table_format::unorm16 ? "r16" : "r32f";
+}
+
+std::vector<float> nodes_of(const gl::texture& table) {
+    if (table.format() == GL_R32F) {
+        return table.read<float>();
+    }
+    std::vector<float> nodes;
+    for (const std::uint16_t node : table.read<std::uint16_t>()) {
+        nodes.push_back(ws::detail::node_value<float>(node));
+    }
+    return nodes;
+}
+
+map_resources::tables::tables(int size, int cells, int functions, table_format format)
+    : counts(GL_R32UI, cells, cells), rows(internal_format(format), cells + 1, functions),
+      columns(internal_format(format), cells + 1, functions), centres(GL_RG32F, size, size) {}
+
+map_resources::map_resources(int map_size, std::size_t maps, int cells, int functions,
+                             table_format format)
     : size(map_size), depth(GL_DEPTH_COMPONENT32F, map_size, map_size, static_cast<int>(maps)) {
     all_layers = gl::framebuffer::of_layers(depth);
     for (std::size_t i = 0; i < maps; ++i) {
         targets.push_back(gl::framebuffer::of_layer(depth, static_cast<int>(i)));
         desired.emplace_back(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW);
         if (cells > 0) {
-            warps.emplace_back(size, cells, functions);
+            warps.emplace_back(size, cells, functions, format);
         }
     }
 }
@@ -194,6 +216,7 @@ void passes::use(const g_buffer& seen) {
 
 void passes::use(const g_buffer& seen, const light_maps& maps, const ws::light<double>& light) {
     use(seen);
+    at_ = maps.at;
     light_block block;
     if (light.kind == ws::light_kind::directional) {
         block.position = glm::vec4(glm::vec3(-glm::normalize(light.direction)), 0.0f);
@@ -266,14 +289,16 @@ std::vector<std::uint32_t> passes::histogram(std::size_t index, int size) {
 }
 
 void passes::warp_map(std::size_t index, const glm::dmat4& warp) {
-    const glm::dmat4 matrix = warp * glm::dmat4(matrix_in_use(index));
-    write_map(index, matrix);
+    const glm::mat4 before = matrix_in_use(index);
+    write_map(index, at_ == precision::in_float ? glm::dmat4(glm::mat4(warp) * before)
+                                                : warp * glm::dmat4(before));
 }
 
 void passes::write_map(std::size_t index, const glm::dmat4& matrix) {
     map_block map;
     map.full = map.matrix = glm::mat4(matrix);
-    map.normal = glm::mat4(glm::transpose(glm::inverse(matrix)));
+    map.normal = at_ == precision::in_float ? glm::transpose(glm::inverse(map.matrix))
+                                            : glm::mat4(glm::transpose(glm::inverse(matrix)));
     light_buffer_.write(sizeof(light_block) + index * sizeof map, sizeof map, &map);
 }
 

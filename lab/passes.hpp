@@ -7,6 +7,7 @@
 #include "gl/timer.hpp"
 #include "lab/light_maps.hpp"
 #include "lab/scene.hpp"
+#include "lab/warp_options.hpp"
 
 #include <glm/glm.hpp>
 
@@ -27,14 +28,22 @@ struct g_buffer {
     gl::framebuffer target;
 };
 
+/// The internal format of a table's texture, and its name in a shader's image.
+GLenum internal_format(table_format format);
+std::string image_format(table_format format);
+
+/// Nodes of a table of either format.
+std::vector<float> nodes_of(const gl::texture& table);
+
 /// Textures and buffers of all maps of one method; their size follows the maps.
 struct map_resources {
     /// `cells` of the tables along a side, 0 for maps without; `functions` of either axis.
-    map_resources(int size, std::size_t maps, int cells, int functions);
+    map_resources(int size, std::size_t maps, int cells, int functions,
+                  table_format format = table_format::r32f);
 
     /// Count map and tables of one map.
     struct tables {
-        tables(int size, int cells, int functions);
+        tables(int size, int cells, int functions, table_format format);
         gl::texture counts, rows, columns, centres;
         gl::texture classes, lines;       ///< where a method wants them, see lab/tables.cpp
         std::array<gl::texture, 2> boxes; ///< sums between the boxes of a window that is no box
@@ -138,6 +147,7 @@ class passes {
     gl::program find_desired_view_, find_depth_range_, crop_, count_histogram_, unwarp_centres_;
     gl::program test_plain_, test_warped_;
     gl::stopwatch watch_;
+    precision at_ = precision::in_double; ///< of matrices that are made of those in use
     std::map<std::string, std::vector<double>>* times_ = nullptr;
     std::map<std::string, double> frame_times_;
     std::vector<std::string> order_;

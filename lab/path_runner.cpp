@@ -68,7 +68,8 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
                                                  raster_of(wanted),
                                                  &rays,
                                                  wanted.tables,
-                                                 &truth},
+                                                 &truth,
+                                                 wanted.set_up},
                                                 each.memory);
             const comparison against_truth = compare(samples, truth, moved.shadowed);
             path_frame row{};

@@ -64,7 +64,8 @@ std::string plots_of(const results& all, const view_pictures& view) {
     std::vector<std::size_t> runs;
     for (std::size_t i = 0; i < all.runs.size(); ++i) {
         const run_record& run = all.runs[i];
-        if (run.scene == view.scene && run.camera == view.camera && run.light == view.light) {
+        if (run.scene == view.scene && run.camera == view.camera && run.light == view.light &&
+            !run.variant) { // variants have a table of their own
             runs.push_back(i);
         }
     }

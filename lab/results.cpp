@@ -54,6 +54,12 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
         bias["displacement_texels"] = number_or_null(effect.displacement_texels);
         json["bias"] = bias;
     }
+    if (run.tables) {
+        json["tables_format"] = *run.tables;
+    }
+    if (run.set_up) {
+        json["setup"] = *run.set_up;
+    }
     if (run.filter != "none") {
         json["filter"] = run.filter;
     }
@@ -61,6 +67,10 @@ ordered_json json_of_run(const run_record& run, glm::ivec2 view) {
     json["wrong_pixel_ratio"] = number_or_null(c.ratio(c.false_shadow + c.false_light));
     json["false_shadow_ratio"] = number_or_null(c.ratio(c.false_shadow));
     json["false_light_ratio"] = number_or_null(c.ratio(c.false_light));
+    if (run.filtered.mean_light) {
+        json["filtered"] = {{"mean_light_error", *run.filtered.mean_light},
+                            {"wrong_pixel_ratio", number_or_null(run.filtered.wrong)}};
+    }
     ordered_json grazing;
     grazing["samples"] = c.grazing_samples;
     grazing["wrong_pixel_ratio"] = c.grazing_samples == 0

@@ -26,8 +26,11 @@ struct run_record {
     std::optional<std::string> bias = std::nullopt; ///< as it was asked for; none: not measured
     bias_measures bias_effect = {};
     std::string filter = "none";                       ///< of the shadows in the pictures
+    filter_errors filtered = {};                       ///< what that filter leaves
+    std::optional<std::string> tables = std::nullopt;  ///< how they are stored, if not as floats
+    std::optional<std::string> set_up = std::nullopt;  ///< its type on the host, if not double
     std::optional<std::string> raster = std::nullopt;  ///< as it was asked for, of maps with tables
-    std::optional<std::string> variant = std::nullopt; ///< of the tables, in a sweep
+    std::optional<std::string> variant = std::nullopt; ///< what a sweep varies, see `run_variant`
     std::string kind = "sun";                          ///< of light: sun, spot or point
 };
 
@@ -94,7 +97,7 @@ std::string table_of(const results& all);
 /// What was left out and why, one line for all methods with the same reason.
 std::vector<std::string> left_out_lines(const results& all);
 
-/// A method with its way to rasterise and the variant of its tables, if they were asked for.
+/// A method with its way to rasterise or what else varies, if that was asked for.
 std::string method_text(const run_record& run);
 
 /// A share as per cent, "-" when there is none.

@@ -12,10 +12,10 @@ namespace lab {
 namespace {
 
 /// What is varied one by one, with everything else as it is by default.
-std::vector<table_variant> variants_at(int map) {
-    std::vector<table_variant> result;
+std::vector<run_variant> variants_at(int map) {
+    std::vector<run_variant> result;
     const auto tables = [&](const char* name, auto set) {
-        table_variant variant{"notw", name, map, {}, {}};
+        run_variant variant{"notw", name, map};
         set(variant.tables);
         result.push_back(variant);
     };
@@ -33,6 +33,15 @@ std::vector<table_variant> variants_at(int map) {
     tables("window 2", [](warp_wishes& wish) { wish.window = 2.0f; });
     tables("floor 0.05", [](warp_wishes& wish) { wish.floor = 0.05f; });
     tables("every 16th sample", [](warp_wishes& wish) { wish.every = 4; });
+    tables("unorm16", [](warp_wishes& wish) { wish.format = table_format::unorm16; });
+    // lengths in scene units: about the side of a texel outdoors, and of several indoors
+    for (const char* const text :
+         {"pcf", "blur", "pcf-texels:2", "pcf-light:0.05", "pcf-footprint:0.05"}) {
+        result.push_back({"notw", std::string("filter ") + text, map, {}, {}, parse_filter(text)});
+    }
+    for (const char* const method : {"sm", "stable", "min-sm", "dv", "lispsm", "fitted", "notw"}) {
+        result.push_back({method, "float", map, {}, {}, {}, precision::in_float});
+    }
     return result;
 }
 
@@ -50,8 +59,8 @@ std::string settings_of(const options& wanted, const camera_view& camera, const 
     for (const int map : wanted.maps) {
         text += "|" + std::to_string(map);
     }
-    for (const table_variant& variant : wanted.variants) {
-        text += "|" + variant.name;
+    for (const run_variant& variant : wanted.variants) {
+        text += "|" + variant.method + " " + variant.name;
     }
     return text;
 }

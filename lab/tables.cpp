@@ -172,8 +172,10 @@ void table_passes::build_lines(map_resources& maps, std::size_t index, const war
         if (collapse.id() == 0) {
             collapse = gpu_.compute("collapse.comp", {rule});
         }
-        if (build_line_.id() == 0) {
-            build_line_ = gpu_.compute("build_line.comp");
+        gl::program& build_line = build_line_[static_cast<std::size_t>(options.format)];
+        if (build_line.id() == 0) {
+            build_line = gpu_.compute("build_line.comp",
+                                      {"WS_TABLE_FORMAT " + image_format(options.format)});
         }
         if (warp.lines.width() != size) {
             warp.lines = gl::texture(GL_R32UI, size, 2);
@@ -185,12 +187,12 @@ void table_passes::build_lines(map_resources& maps, std::size_t index, const war
         warp.lines.bind_image(0, GL_READ_ONLY);
         warp.rows.bind_image(1, GL_WRITE_ONLY);
         warp.columns.bind_image(2, GL_WRITE_ONLY);
-        build_line_.set("ws_cells", glm::ivec2(size));
-        build_line_.set("ws_width", options.width * static_cast<float>(size));
-        build_line_.set("ws_floor", std::max(options.build.floor,
-                                             4.0f * ws::smallest_floor<float, float>(size)));
-        build_line_.set("ws_power", options.power);
-        build_line_.use();
+        build_line.set("ws_cells", glm::ivec2(size));
+        build_line.set("ws_width", options.width * static_cast<float>(size));
+        build_line.set("ws_floor",
+                       std::max(options.build.floor, least_floor(size, options.format)));
+        build_line.set("ws_power", options.power);
+        build_line.use();
         glDispatchCompute(2, 1, 1);
         gl::wait_for_writes();
     });

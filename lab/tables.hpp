@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -67,7 +68,8 @@ class table_passes {
     passes& gpu_;
     std::map<std::vector<std::string>, splat_programs> splats_;
     axis_passes axes_;
-    gl::program weigh_cells_, mark_edges_, build_line_;
+    gl::program weigh_cells_, mark_edges_;
+    std::array<gl::program, 2> build_line_; ///< by format of the tables
     std::map<std::string, gl::program> collapse_;
     std::optional<map_resources> seen_by_light_; ///< depth image of forward and hybrid analysis
     gl::texture light_edges_;

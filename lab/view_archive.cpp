@@ -52,6 +52,10 @@ json pack(const run_record& run) {
         {"map", run.map},
         {"raster", json_or_null(run.raster)},
         {"variant", json_or_null(run.variant)},
+        {"filter", run.filter},
+        {"filtered", {json_or_null(run.filtered.mean_light), json_or_null(run.filtered.wrong)}},
+        {"tables", json_or_null(run.tables)},
+        {"set_up", json_or_null(run.set_up)},
         {"counts", {c.samples, c.false_shadow, c.false_light, c.grazing_samples, c.grazing_wrong}},
         {"frame_ms", r.frame_ms},
         {"cpu_setup_us", r.cpu_setup_us},
@@ -83,7 +87,12 @@ run_record unpack_run(const json& packed) {
     run.map = packed.at("map");
     run.raster = read_or_nothing<std::string>(packed.at("raster"));
     run.variant = read_or_nothing<std::string>(packed.at("variant"));
-    run.filter = "none";
+    run.filter = packed.at("filter");
+    const json& filtered = packed.at("filtered");
+    run.filtered = {read_or_nothing<double>(filtered.at(0)),
+                    read_or_nothing<double>(filtered.at(1))};
+    run.tables = read_or_nothing<std::string>(packed.at("tables"));
+    run.set_up = read_or_nothing<std::string>(packed.at("set_up"));
     comparison& c = run.against_truth;
     const json& counts = packed.at("counts");
     c.samples = counts.at(0);

@@ -23,7 +23,7 @@ struct planned_run {
     int map; ///< 0: a method without a map
     std::optional<bias_choice> bias;
     std::optional<raster_choice> raster;
-    const table_variant* variant = nullptr; ///< other tables than those of the command line
+    const run_variant* variant = nullptr; ///< something else than the command line has
 };
 
 /// Nothing where nothing was asked for: one run, with the default.
@@ -40,7 +40,8 @@ std::vector<planned_run> plan_runs(const options& wanted, const light_view& ligh
     for (const int map : wanted.maps) {
         for (const std::string& method : wanted.methods) {
             const bool once = !has_maps(method);
-            if ((once && map != wanted.maps.front()) || why_not(method, light)) {
+            if ((once && map != wanted.maps.front()) || why_not(method, light) ||
+                why_not(method, wanted.set_up)) {
                 continue;
             }
             if (once) {
@@ -59,7 +60,7 @@ std::vector<planned_run> plan_runs(const options& wanted, const light_view& ligh
             }
         }
     }
-    for (const table_variant& variant : wanted.variants) {
+    for (const run_variant& variant : wanted.variants) {
         if (!why_not(variant.method, light)) {
             result.push_back({variant.method, variant.map, {}, variant.raster, &variant});
         }
@@ -122,12 +123,16 @@ class view_runner {
     }
 
     view_request request(const planned_run& each) const {
-        return {camera_,         light_,
-                each.map,        wanted_.seed,
-                wanted_.repeat,  each.bias,
-                wanted_.filter,  each.raster.value_or(raster_choice{}),
-                &rays_,          each.variant != nullptr ? each.variant->tables : wanted_.tables,
-                &truth_.shadowed};
+        view_request result{
+            camera_,        light_,         each.map,         wanted_.seed,
+            wanted_.repeat, each.bias,      wanted_.filter,   each.raster.value_or(raster_choice{}),
+            &rays_,         wanted_.tables, &truth_.shadowed, wanted_.set_up};
+        if (each.variant != nullptr) {
+            result.tables = each.variant->tables;
+            result.filter = each.variant->filter.value_or(wanted_.filter);
+            result.set_up = each.variant->set_up.value_or(wanted_.set_up);
+        }
+        return result;
     }
 
     run_record measured(const planned_run& each) {
@@ -140,7 +145,8 @@ class view_runner {
             record.against_truth = compare(samples_, truth_.shadowed, record.result.shadowed);
             return record;
         }
-        run_method(record, gpu_, request(each), samples_, truth_.shadowed);
+        const view_request asked = request(each);
+        run_method(record, gpu_, asked, samples_, truth_.shadowed);
         if (each.raster) {
             record.raster = raster_name(*each.raster);
         }
@@ -148,7 +154,14 @@ class view_runner {
             record.variant = each.variant->name;
         }
         if (!record.result.light.empty()) {
-            record.filter = filter_name(wanted_.filter);
+            record.filter = filter_name(asked.filter);
+            record.filtered = measure_filter(samples_, truth_.shadowed, record.result.light);
+        }
+        if (has_tables(each.method) && asked.tables.format == table_format::unorm16) {
+            record.tables = "unorm16";
+        }
+        if (has_maps(each.method) && asked.set_up == precision::in_float) {
+            record.set_up = "float";
         }
         return record;
     }

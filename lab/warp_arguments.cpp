@@ -106,6 +106,8 @@ void add_warp_arguments(CLI::App& app, warp_arguments& given) {
         ->group("Methods with warp tables");
     add("--tables", given.tables,
         "Most cells of a table along a side, no more than the map has texels (128)");
+    add("--tables-format", given.format,
+        "How tables are stored: r32f, or unorm16 in half the memory (r32f)");
     add("--window", given.window,
         "Smoothing across functions, as a share of their number, 0 to 2 (0.7)");
     add("--smooth", given.smooth,
@@ -167,6 +169,12 @@ warp_wishes warp_wishes_of(const warp_arguments& given) {
     }
     if (!given.smooth.empty()) {
         wishes.shape = shape_of(given.smooth);
+    }
+    if (!given.format.empty()) {
+        if (given.format != "r32f" && given.format != "unorm16") {
+            throw bad_input("--tables-format wants r32f or unorm16, not '" + given.format + "'");
+        }
+        wishes.format = given.format == "unorm16" ? table_format::unorm16 : table_format::r32f;
     }
     if (!given.order.empty()) {
         if (given.order != "u" && given.order != "v") {

@@ -16,7 +16,7 @@ namespace lab {
 struct warp_arguments {
     std::vector<std::string> importance;
     std::string tables, window, smooth, floor, shear, order, power, subset, cells, collapse, sigma,
-        edge_share;
+        edge_share, format;
     bool align = false;
 };
 

@@ -24,6 +24,12 @@ enum class known_shadows {
     truth       ///< the ray tracer's: the bound of what knowing them can give
 };
 
+/// How the nodes of tables are stored on the device.
+enum class table_format {
+    r32f,   ///< float
+    unorm16 ///< [0, 1] in steps of 1/65535
+};
+
 /// How the tables of one method are made.
 struct warp_options {
     analysis from = analysis::backward;
@@ -37,7 +43,8 @@ struct warp_options {
     warpshadow::cell_rule collapse = warpshadow::cell_rule::sum; ///< of rectilinear tables
     float width = 0.0f; ///< of their Gaussian, standard deviation as a share of the cells
     warpshadow::build_options<float> build = {};
-    int tables = 128;   ///< most cells along a side; no more than the map has texels
+    int tables = 128; ///< most cells along a side; no more than the map has texels
+    table_format format = table_format::r32f;
     int every = 1;      ///< one view sample of each block of so many squared counts
     bool align = false; ///< the map is turned to the principal axis of its importance
 };
@@ -50,6 +57,7 @@ struct warp_wishes {
     std::optional<warpshadow::window_shape> shape;
     std::optional<bool> v_first, align;
     std::optional<int> tables, every;
+    std::optional<table_format> format;
 
     /// The options of a method with these in their place.
     [[nodiscard]] warp_options over(warp_options options) const {
@@ -70,6 +78,7 @@ struct warp_wishes {
         take(options.power, power);
         take(options.tables, tables);
         take(options.every, every);
+        take(options.format, format);
         take(options.align, align);
         return options;
     }

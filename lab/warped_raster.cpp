@@ -91,7 +91,10 @@ warped_raster::warped_raster(passes& gpu)
     draw_exact_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag", {"COVERAGE"});
     predict_ = gpu_.compute("predict_gain.comp");
     passes::set_units(predict_);
-    weaken_ = gpu_.compute("weaken_table.comp");
+    for (std::size_t i = 0; i < weaken_.size(); ++i) {
+        weaken_[i] = gpu_.compute("weaken_table.comp",
+                                  {"TABLE_FORMAT " + image_format(static_cast<table_format>(i))});
+    }
     const std::size_t triangles = gpu_.world().triangles.size();
     sources_ =
         gl::buffer((triangles + triangles / 2 + 1024) * source_bytes, nullptr, GL_DYNAMIC_COPY);
@@ -129,10 +132,13 @@ double warped_raster::weaken(map_resources& maps, std::size_t index) {
                                                         (256.0 * static_cast<double>(sides[1])));
         share = warpshadow::weakening(mean_side_);
         if (share > 0.0f) {
-            weaken_.set("share", share);
-            for (const gl::texture* table : {&maps.warps[index].rows, &maps.warps[index].columns}) {
+            const gl::texture& rows = maps.warps[index].rows;
+            const gl::texture& columns = maps.warps[index].columns;
+            const gl::program& weaken = weaken_[rows.format() == GL_R16 ? 1 : 0];
+            weaken.set("share", share);
+            for (const gl::texture* table : {&rows, &columns}) {
                 table->bind_image(0, GL_READ_WRITE);
-                weaken_.dispatch(table->width(), table->height());
+                weaken.dispatch(table->width(), table->height());
                 gl::wait_for_writes();
             }
         }

@@ -69,7 +69,8 @@ class warped_raster {
     passes& gpu_;
     triangle_lists lists_;
     gl::buffer sources_, sides_;
-    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_, predict_, weaken_;
+    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_, predict_;
+    std::array<gl::program, 2> weaken_; ///< by format of the tables
     float mean_side_ = 1.0f;
 };
 

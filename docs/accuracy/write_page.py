@@ -158,7 +158,21 @@ def doubling(sweep):
 
 
 def variants(sweep):
-    """What is varied one by one, against the same view without."""
+    """What is varied one by one, against the same method without."""
+    scores = sweep["accuracy"].get("variants")
+    if scores is None:
+        return old_variants(sweep)
+    lines = [row(["method", "with", "views", "wrong", "light error", "frame time", "bytes", "set-up"]),
+             row(["---", "---"] + ["--:"] * 6)]
+    for s in scores:
+        lines.append(row([f"`{s['method']}`", s["variant"], str(s["views"]), times(s["wrong"]),
+                          "" if s["light_error"] is None else times(s["light_error"]),
+                          *(times(s[k]) for k in ("frame_time", "bytes", "cpu_setup"))]))
+    return "\n".join(lines) + "\n"
+
+
+def old_variants(sweep):
+    """The same from a file without scores of variants."""
     usual = {(r["scene"], r["camera"], r["light"], r["method"], r["map"]): r for r in sweep["runs"]
              if "variant" not in r}
     ratios = {}

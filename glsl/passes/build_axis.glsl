@@ -14,13 +14,17 @@
 #ifndef WS_BINDING_TABLE
 #define WS_BINDING_TABLE 1
 #endif
+// Define WS_TABLE_FORMAT r16 for tables that are stored as UNORM16.
+#ifndef WS_TABLE_FORMAT
+#define WS_TABLE_FORMAT r32f
+#endif
 #define WS_BUILD_GROUP 64 // lanes of a row
 #define WS_BUILD_BLOCK 8  // lanes whose sums are added up by one of them
 
 layout(local_size_x = WS_BUILD_GROUP) in;
 
 layout(r32ui, binding = WS_BINDING_SUMS) uniform readonly uimage2D ws_sums;
-layout(r32f, binding = WS_BINDING_TABLE) uniform writeonly image2D ws_table;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_TABLE) uniform writeonly image2D ws_table;
 
 uniform int ws_radius;  // half-width of the window, from ws_window_radius
 uniform float ws_floor; // density floor

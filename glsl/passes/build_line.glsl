@@ -16,12 +16,16 @@
 #endif
 #define WS_LINE_GROUP 64    // lanes of a line
 #define WS_LINE_CELLS 4096  // longest line
+// Define WS_TABLE_FORMAT r16 for tables that are stored as UNORM16.
+#ifndef WS_TABLE_FORMAT
+#define WS_TABLE_FORMAT r32f
+#endif
 
 layout(local_size_x = WS_LINE_GROUP) in;
 
 layout(r32ui, binding = WS_BINDING_LINES) uniform readonly uimage2D ws_lines;
-layout(r32f, binding = WS_BINDING_TABLE_U) uniform writeonly image2D ws_table_u;
-layout(r32f, binding = WS_BINDING_TABLE_V) uniform writeonly image2D ws_table_v;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_TABLE_U) uniform writeonly image2D ws_table_u;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_TABLE_V) uniform writeonly image2D ws_table_v;
 
 uniform ivec2 ws_cells; // of the lines of u and of v, at most WS_LINE_CELLS
 uniform float ws_width; // standard deviation of the Gaussian in cells, 0 for none

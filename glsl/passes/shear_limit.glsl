@@ -15,11 +15,15 @@
 #define WS_BINDING_MIX 0
 #endif
 #define WS_SHEAR_GROUP 64 // lanes of a pair
+// Define WS_TABLE_FORMAT r16 for tables that are stored as UNORM16.
+#ifndef WS_TABLE_FORMAT
+#define WS_TABLE_FORMAT r32f
+#endif
 
 layout(local_size_x = WS_SHEAR_GROUP) in;
 
-layout(r32f, binding = WS_BINDING_TABLE) uniform readonly image2D ws_table;
-layout(r32f, binding = WS_BINDING_COMMON) uniform readonly image2D ws_common;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_TABLE) uniform readonly image2D ws_table;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_COMMON) uniform readonly image2D ws_common;
 
 layout(std430, binding = WS_BINDING_MIX) coherent buffer ws_mix_buffer
 {

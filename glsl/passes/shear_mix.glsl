@@ -10,11 +10,15 @@
 #ifndef WS_BINDING_MIX
 #define WS_BINDING_MIX 0
 #endif
+// Define WS_TABLE_FORMAT r16 for tables that are stored as UNORM16.
+#ifndef WS_TABLE_FORMAT
+#define WS_TABLE_FORMAT r32f
+#endif
 
 layout(local_size_x = 16, local_size_y = 8) in;
 
-layout(r32f, binding = WS_BINDING_TABLE) uniform image2D ws_table;
-layout(r32f, binding = WS_BINDING_COMMON) uniform readonly image2D ws_common;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_TABLE) uniform image2D ws_table;
+layout(WS_TABLE_FORMAT, binding = WS_BINDING_COMMON) uniform readonly image2D ws_common;
 
 layout(std430, binding = WS_BINDING_MIX) readonly buffer ws_mix_buffer
 {

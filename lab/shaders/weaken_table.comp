@@ -3,7 +3,7 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 #include "warpshadow/warp.glsl"
 #include "warpshadow/warp_strength.glsl"
-layout(r32f, binding = 0) uniform image2D table;
+layout(TABLE_FORMAT, binding = 0) uniform image2D table;
 uniform float share;
 
 void main()

@@ -96,6 +96,36 @@ TEST_CASE("scores: geometric means of ratios at equal sizes") {
     REQUIRE((scores[1].better == 1 && scores[1].worse == 1));
 }
 
+TEST_CASE("variants: ratios to the same method without, and no part in scores and budgets") {
+    std::vector<lab::run_record> runs{
+        run_of("a", "sm", 512, 100, 1.0),  run_of("a", "notw", 512, 20, 4.0),
+        run_of("a", "notw", 512, 10, 1.0), run_of("a", "notw", 512, 20, 8.0),
+        run_of("b", "sm", 512, 100, 1.0),  run_of("b", "notw", 512, 20, 4.0),
+        run_of("b", "notw", 512, 40, 1.0)};
+    for (const std::size_t i : {std::size_t(2), std::size_t(6)}) {
+        runs[i].variant = "tables 32";
+        runs[i].result.cpu_setup_us = {{"light matrix", 3.0}, {"fit", 5.0}};
+    }
+    runs[1].result.cpu_setup_us = runs[5].result.cpu_setup_us = {{"light matrix", 4.0}};
+    runs[3].variant = "filter pcf";
+    runs[3].filtered = {0.03, 0.01};
+    const std::vector<lab::variant_score> scores = lab::score_variants(runs);
+    REQUIRE(scores.size() == 2);
+    REQUIRE((scores[0].method == "notw" && scores[0].variant == "tables 32"));
+    REQUIRE(scores[0].views == 2);
+    REQUIRE(scores[0].wrong == Approx(1.0)); // half and double
+    REQUIRE(scores[0].time == Approx(0.25));
+    REQUIRE(scores[0].set_up == Approx(2.0));
+    REQUIRE_FALSE(scores[0].light_error);
+    REQUIRE(scores[1].wrong == Approx(0.5)); // of the filtered shadows
+    REQUIRE(*scores[1].light_error == Approx(1.5));
+    REQUIRE(lab::score_methods(runs).size() == 2);
+    for (const lab::budget_choice& each :
+         lab::choose_for_budgets(runs, 512, std::vector<double>{1.0, 100.0})) {
+        REQUIRE(each.method == (each.budget == 1.0 ? "sm" : "notw"));
+    }
+}
+
 TEST_CASE("equal quality: the cheapest size that has no more wrong pixels, or none") {
     const std::vector<lab::run_record> runs{
         run_of("a", "notw", 512, 20, 5.0), run_of("a", "sm", 256, 100, 1.0),
@@ -186,6 +216,10 @@ TEST_CASE("archives: what goes in comes out, and nothing of other settings or br
     lab::run_record run = run_of("a", "notw", 512, 20, 5.0, 77);
     run.kind = "spot";
     run.variant = "tables 32";
+    run.filter = "pcf-texels:2";
+    run.filtered = {0.125, 0.0625};
+    run.tables = "unorm16";
+    run.set_up = "float";
     run.result.weakened = 0.25;
     run.result.passes = {{"shadow map", 1.5}};
     run.result.cpu_setup_us = {{"light matrix", 0.5}};

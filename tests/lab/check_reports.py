@@ -36,6 +36,7 @@ RUN_KEYS = {
     "false_shadow_ratio", "false_light_ratio", "grazing", "frame_ms", "pass_ms", "cpu_setup_us",
     "bytes", "triangles", "maps", "angle_degrees", "status",
 }
+OPTIONAL_KEYS = {"bias", "filter", "filtered", "raster", "tables_format", "setup"}
 METRIC_KEYS = {"m", "m_facing", "mer", "storage_factor"}
 PATH_KEYS = ["scene", "camera", "light", "path", "method", "map", "view", "mean", "frames"]
 
@@ -108,7 +109,7 @@ def check_results(results):
         keys = RUN_KEYS | (METRIC_KEYS if measured else set())
         if measured and ("notw" in entry["method"] or entry["method"].startswith("rtw")):
             keys |= {"weakened", "predicted_texel_side"}
-        assert set(entry) - {"bias", "filter", "raster"} == keys, set(entry) ^ keys
+        assert set(entry) - OPTIONAL_KEYS == keys, set(entry) ^ keys
         for m in (entry["m"], entry["m_facing"]) if measured else ():
             assert 0 <= m["p50"] <= m["p99"] <= m["max"] and 0 <= m["share_above_1"] <= 1
             assert (m["max"] > 0) == (entry["samples"] > 0)
@@ -278,6 +279,47 @@ def check_tables():
     assert [p["method"] for p in path["paths"]] == ["notw-edges"]
 
 
+def check_table_formats():
+    """Tables in 16 bits: half the memory of their nodes, and few pixels that see it."""
+    arguments = ["--scene", "leaves", "--map", "64", "--methods", "dv,notw,rtw-backward"]
+    floats = report("floats", *arguments, "--shear", "0.5", "--tables-format", "r32f")
+    halves = report("halves", *arguments, "--shear", "0.5", "--tables-format", "unorm16")
+    for of_float, of_half in zip(floats["runs"], halves["runs"]):
+        assert "tables_format" not in of_float
+        if of_float["method"] == "dv":
+            assert "tables_format" not in of_half
+            continue
+        assert of_half["tables_format"] == "unorm16"
+        # rows and columns of 65 nodes, and the function that they share under a shear limit
+        nodes = 65 * (2 if of_float["method"] == "rtw-backward" else 2 * 64 + 1)
+        assert of_float["bytes"] - of_half["bytes"] == 2 * nodes, of_float["method"]
+        # half a step is 1/2048 of a texel of this map, and more where functions differ: few samples
+        # lie so near the border of a texel, and most of those see the same from the next one
+        off = abs(of_float["wrong_pixel_ratio"] - of_half["wrong_pixel_ratio"])
+        assert off < 0.003, (of_float["method"], off)
+        assert of_float["m"] != of_half["m"], "it must show"
+
+
+def check_set_up():
+    """Matrices at float are those at double but for rounding, which few pixels see."""
+    differ = 0
+    for scene, methods in (("leaves", "sm,stable,min-sm,dv,pssm,lispsm,fitted,notw"),
+                           ("interior", "min-sm,fitted")):
+        arguments = ["--scene", scene, "--map", "128", "--methods", methods]
+        doubles = report("doubles", *arguments)
+        floats = report("floats", *arguments, "--setup", "float")
+        for at_double, at_float in zip(doubles["runs"], floats["runs"]):
+            assert at_float["setup"] == "float" and "setup" not in at_double
+            off = abs(at_double["wrong_pixel_ratio"] - at_float["wrong_pixel_ratio"])
+            assert off * at_double["samples"] < 6, (scene, at_double["method"], off)
+            differ += at_double["m"] != at_float["m"]
+    assert differ > 0, "it must show"
+    none = report("point-floats", "--scene", "interior", "--light", "point:0.2,1.97,-0.1", "--map",
+                  "64", "--methods", "dv,cube6,dpsm", "--setup", "float")
+    assert methods_of(none) == [("dv", 64)]
+    assert [e["method"] for e in none["not_applicable"]] == ["cube6", "dpsm"]
+
+
 def check_paths():
     """A camera that moves: frame by frame, and against what must hold for any camera."""
     arguments = ["--scene", "leaves", "--methods", "sm,stable,min-sm,dv,pssm,sv,raytraced", "--map",
@@ -352,7 +394,12 @@ def check_biases():
         assert [r.get("filter") for r in filtered["runs"]] == [kind] * 4 + [None]
         for soft, hard in zip(facts(filtered), facts(plain)):
             soft.pop("filter", None)
+            errors = soft.pop("filtered", None)
             assert soft == hard
+            if errors:
+                # light that is wrong by more than half, against all that is missing or too much
+                assert 0 < errors["wrong_pixel_ratio"] < 2 * errors["mean_light_error"] < 1
+        assert all(("filter" in r["pass_ms"]) == (r["map"] != 0) for r in filtered["runs"])
         name = "leaves-c0-l0-m64-sm.png"
         pictures = [(scratch / folder / name).read_bytes() for folder in (kind, "plain")]
         assert pictures[0] != pictures[1]
@@ -504,7 +551,8 @@ def check_help():
     done = run("--help")
     assert done.returncode == 0 and done.stderr == ""
     for option in ("--scene", "--list-scenes", "--camera", "--light", "--methods", "--map",
-                   "--view", "--repeat", "--bias", "--importance", "--tables", "--window", "--floor",
+                   "--view", "--repeat", "--bias", "--setup", "--importance", "--tables",
+                   "--tables-format", "--window", "--floor",
                    "--smooth", "--shear", "--align", "--order", "--power", "--subset", "--cells",
                    "--collapse", "--sigma", "--filter", "--preset", "--sweep", "--path", "--frames",
                    "--seed", "--out", "Examples:"):
@@ -523,7 +571,7 @@ PARTS = {
     "folders": (check_help, check_folders, check_files_as_scenes, check_finer_scene, check_views),
     "methods": (check_every_method,),
     "lights": (check_spot_and_point, check_virtual_lights),
-    "tables": (check_tables,),
+    "tables": (check_tables, check_table_formats, check_set_up),
     "paths": (check_paths,),
     "biases": (check_biases,),
     "figures": (check_figures,),

@@ -116,9 +116,9 @@ struct lit_edge {
 
     /// Widths along x of the penumbra, by rows of the view: 6 ∫ l (1 − l) is that of a ramp.
     std::vector<double> widths(const lab::filter_choice& filter) {
-        const std::vector<float> light =
-            biased.light(maps, chosen, true, lab::bias_choice{}, filter, seen,
-                         lab::camera_frustum(world, world.cameras.front(), view));
+        biased.filter(maps, chosen, true, lab::bias_choice{}, filter, seen,
+                      lab::camera_frustum(world, world.cameras.front(), view), true);
+        const std::vector<float> light = biased.light();
         gl::check("filter");
         const double pixel = static_cast<double>(to_x - from_x) / view.x;
         std::vector<double> result;

@@ -77,6 +77,18 @@ struct device_axis {
     std::vector<float> table;
 };
 
+/// Nodes of a table of either format.
+std::vector<float> nodes_of(const gl::texture& table) {
+    if (table.format() == GL_R32F) {
+        return table.read<float>();
+    }
+    std::vector<float> nodes;
+    for (const std::uint16_t node : table.read<std::uint16_t>()) {
+        nodes.push_back(static_cast<float>(node) / 65535.0f);
+    }
+    return nodes;
+}
+
 /// Splats and builds one axis; `rows` is the table of the first axis or null.
 device_axis build_on_device(const view& samples, int size, int radius, float floor,
                             const gl::texture* rows, gl::texture& table) {
@@ -87,7 +99,8 @@ device_axis build_on_device(const view& samples, int size, int radius, float flo
     const gl::program splat = pass(splat_text);
     const gl::program sums = pass("#include \"passes/column_sums.glsl\"\n");
     const gl::program build =
-        pass("#include \"warpshadow/warp_build.glsl\"\n#include \"passes/build_axis.glsl\"\n");
+        pass(std::string(table.format() == GL_R16 ? "#define WS_TABLE_FORMAT r16\n" : "") +
+             "#include \"warpshadow/warp_build.glsl\"\n#include \"passes/build_axis.glsl\"\n");
 
     const gl::buffer list(std::span<const glm::vec4>(samples.all));
     gl::texture counts(GL_R32UI, size, size);
@@ -111,7 +124,7 @@ device_axis build_on_device(const view& samples, int size, int radius, float flo
     build.use();
     glDispatchCompute(static_cast<GLuint>(size), 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
-    result.table = table.read<float>();
+    result.table = nodes_of(table);
     return result;
 }
 
@@ -149,6 +162,36 @@ void compare_tables(const std::vector<float>& device, const std::vector<float>& 
 }
 
 } // namespace
+
+TEST_CASE("passes: tables of 16 bits are those of the host to half a step, and increase") {
+    const gl::headless_context context;
+    for (const int size : {2, 17, 128, 512}) {
+        DYNAMIC_SECTION("map of " << size) {
+            const view samples = make_view({257, 193}, static_cast<unsigned>(size));
+            ws::build_options<float> options;
+            // of the storage, and what the device's float may be off by at both nodes
+            options.floor = ws::smallest_floor<float, std::uint16_t>(size) +
+                            4.0f * ws::smallest_floor<float, float>(size);
+            const int radius = ws::window_radius(options.window, size);
+            gl::texture table(GL_R16, size + 1, size);
+            const device_axis built =
+                build_on_device(samples, size, radius, options.floor, nullptr, table);
+            const std::vector<float> host = build_on_host(built.counts, size, options);
+            const std::size_t stride = static_cast<std::size_t>(size) + 1;
+            float worst = 0.0f;
+            bool monotone = true;
+            for (std::size_t i = 0; i < host.size(); ++i) {
+                worst = std::max(worst, std::abs(built.table[i] - host[i]) * 65535.0f);
+                monotone = monotone && (i % stride == 0 || built.table[i] > built.table[i - 1]);
+                if (i % stride == 0 || i % stride == stride - 1) {
+                    REQUIRE(built.table[i] == (i % stride == 0 ? 0.0f : 1.0f));
+                }
+            }
+            CHECK(worst < 0.5f + 0.1f); // 6 ulps of 1 are a twentieth of a step
+            CHECK(monotone);
+        }
+    }
+}
 
 TEST_CASE("passes: tables of the device are those of the host") {
     const gl::headless_context context;
