@@ -137,6 +137,9 @@ void run_lab(const lab::options& wanted) {
                       ? lab::steps_of_view(wanted) *
                             (wanted.path.empty() ? 1 : static_cast<std::size_t>(wanted.frames))
                       : lab::runs_of_figure(wanted.preset));
+        if (const auto moves = lab::options_of_motion(wanted, work.lights.front())) {
+            steps += moves->methods.size() * static_cast<std::size_t>(moves->frames);
+        }
     }
     std::vector<lab::view_pictures> views;
     std::vector<lab::path_pictures> paths;
@@ -183,6 +186,11 @@ void run_lab(const lab::options& wanted) {
                                                       light, all, folder, progress));
                     }
                 }
+            }
+            if (const auto moves = lab::options_of_motion(wanted, work.lights.front())) {
+                paths.push_back(lab::resume_path(*moves, work.world, renderer, rays,
+                                                 work.cameras.front(), work.lights.front(), all,
+                                                 folder, progress));
             }
         }
         progress.show("report");

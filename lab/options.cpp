@@ -334,6 +334,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     }
     if (!result.sweep.empty()) {
         result.pictured = pictured_size(result);
+        settle_motion(result);
     }
     if (result.out.empty()) {
         throw bad_input("--out wants a folder");

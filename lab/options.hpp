@@ -28,6 +28,14 @@ struct run_variant {
     std::optional<precision> set_up = std::nullopt;
 };
 
+/// A camera that moves, besides those that stand still: of a sweep, for each scene.
+struct motion {
+    std::string path; ///< see lab/path.hpp
+    std::vector<std::string> methods;
+    int map;
+    int frames;
+};
+
 /// A light of one scene alone.
 struct light_of_scene {
     std::string scene;
@@ -54,8 +62,9 @@ struct options {
     precision set_up = precision::in_double;  ///< of matrices and fits on the host
     std::vector<run_variant> variants;        ///< to be run besides the methods
     std::vector<light_of_scene> point_lights; ///< besides the lights
-    int pictured = 0;                         ///< size of the maps whose pictures are kept; 0: all
-    std::string preset;                       ///< a figure to redo, see lab/figures.hpp, or none
+    std::optional<motion> moves; ///< of the first camera and the first light, in a sweep
+    int pictured = 0;            ///< size of the maps whose pictures are kept; 0: all
+    std::string preset;          ///< a figure to redo, see lab/figures.hpp, or none
     std::string path; ///< a moving camera, see lab/path.hpp; empty for cameras that stand still
     int frames = 60;  ///< along the path
     unsigned seed = 1;

@@ -50,7 +50,8 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
         const std::vector<std::uint8_t> truth = rays.shadows(samples, light).shadowed;
         const glm::mat4 matrix = camera_matrix(camera_frustum(world, camera, samples.size));
         const bool is_pictured =
-            frame == 0 || frame == cameras.size() / 2 || frame + 1 == cameras.size();
+            wanted.sweep.empty() && // whose views have pictures enough
+            (frame == 0 || frame == cameras.size() / 2 || frame + 1 == cameras.size());
         const std::optional<shader> shades =
             is_pictured ? std::optional<shader>(std::in_place, world, rays, samples, camera, light)
                         : std::nullopt;

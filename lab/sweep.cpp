@@ -1,11 +1,15 @@
 #include "lab/sweep.hpp"
 
+#include "lab/method_table.hpp"
+#include "lab/path_runner.hpp"
 #include "lab/view_archive.hpp"
 #include "lab/view_arguments.hpp"
 #include "lab/view_runner.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace lab {
@@ -53,6 +57,7 @@ std::string settings_of(const options& wanted, const camera_view& camera, const 
                        std::to_string(wanted.view.y) + "|" + std::to_string(wanted.repeat) + "|" +
                        std::to_string(wanted.rounds) + "|" + std::to_string(wanted.seed) + "|" +
                        camera_text(camera) + "|" + light_text(light);
+    text += "|" + wanted.path + "|" + std::to_string(wanted.frames);
     for (const std::string& method : wanted.methods) {
         text += "|" + method;
     }
@@ -96,12 +101,41 @@ options options_of_sweep(const std::string& name) {
         result.rounds = 5;
     }
     result.variants = variants_at(512);
+    result.moves = {"yaw", {"sm", "stable", "min-sm", "dv", "fitted", "notw"}, 512, full ? 60 : 12};
     return result;
 }
 
 int pictured_size(const options& wanted) {
     const bool usual = std::find(wanted.maps.begin(), wanted.maps.end(), 512) != wanted.maps.end();
     return usual ? 512 : *std::min_element(wanted.maps.begin(), wanted.maps.end());
+}
+
+void settle_motion(options& wanted) {
+    if (!wanted.moves) {
+        return;
+    }
+    std::erase_if(wanted.moves->methods, [&](const std::string& method) {
+        return std::find(wanted.methods.begin(), wanted.methods.end(), method) ==
+               wanted.methods.end();
+    });
+    wanted.moves->map = pictured_size(wanted);
+}
+
+std::optional<options> options_of_motion(const options& wanted, const light_view& light) {
+    if (!wanted.moves) {
+        return std::nullopt;
+    }
+    options result = wanted;
+    result.moves.reset();
+    result.variants.clear();
+    result.path = wanted.moves->path;
+    result.frames = wanted.moves->frames;
+    result.maps = {wanted.moves->map};
+    result.methods = wanted.moves->methods;
+    std::erase_if(result.methods, [&](const std::string& method) {
+        return why_not(method, light) || why_not(method, wanted.set_up);
+    });
+    return result.methods.empty() ? std::nullopt : std::optional(result);
 }
 
 view_pictures resume_view(const options& wanted, const scene& world, renderer& gpu,
@@ -130,6 +164,31 @@ view_pictures resume_view(const options& wanted, const scene& world, renderer& g
         each.run -= first;
     }
     folder.write(name, archive_of(archived, settings));
+    folder.keep();
+    return seen;
+}
+
+path_pictures resume_path(const options& wanted, const scene& world, renderer& gpu,
+                          const ray_tracer& rays, const camera_view& camera,
+                          const light_view& light, results& all, report_folder& folder,
+                          progress_bar& progress) {
+    const std::string settings = settings_of(wanted, camera, light, all);
+    const std::string name =
+        archive_name({world.name, camera.label, light.label, "path", wanted.path});
+    const std::size_t first = all.paths.size();
+    if (std::optional<std::vector<path_record>> kept =
+            read_path_archive(folder.read(name), settings)) {
+        folder.keep();
+        for (path_record& path : *kept) {
+            for (std::size_t i = 0; i < path.frames.size(); ++i) {
+                progress.advance();
+            }
+            all.paths.push_back(std::move(path));
+        }
+        return {first, all.paths.size() - first, true, camera_text(camera), light_text(light), {}};
+    }
+    path_pictures seen = run_path(wanted, world, gpu, rays, camera, light, all, folder, progress);
+    folder.write(name, archive_of(std::span(all.paths).subspan(first), settings));
     folder.keep();
     return seen;
 }

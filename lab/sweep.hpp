@@ -23,9 +23,22 @@ options options_of_sweep(const std::string& name);
 /// The size at which a sweep shows pictures and matches qualities: 512, or the smallest asked for.
 int pictured_size(const options& wanted);
 
+/// Moves only methods that the sweep runs, at the size of its pictures.
+void settle_motion(options& wanted);
+
+/// What of a sweep is its moving camera, as options of a path; nothing where no method of it can do
+/// the light.
+std::optional<options> options_of_motion(const options& wanted, const light_view& light);
+
 /// `run_view`, unless the folder holds that view already, with the same options, from a sweep that
 /// did not end; finished views are kept there.
 view_pictures resume_view(const options& wanted, const scene& world, renderer& gpu,
+                          const ray_tracer& rays, const camera_view& camera,
+                          const light_view& light, results& all, report_folder& folder,
+                          progress_bar& progress);
+
+/// `run_path` of such options, kept and taken from there in the same way.
+path_pictures resume_path(const options& wanted, const scene& world, renderer& gpu,
                           const ray_tracer& rays, const camera_view& camera,
                           const light_view& light, results& all, report_folder& folder,
                           progress_bar& progress);

@@ -146,6 +146,33 @@ run_pictures unpack_pictures(const json& packed) {
     return seen;
 }
 
+json pack(const path_record& path) {
+    json packed = {{"scene", path.scene},    {"camera", path.camera}, {"light", path.light},
+                   {"path", path.path},      {"method", path.method}, {"map", path.map},
+                   {"frames", json::array()}};
+    for (const path_frame& frame : path.frames) {
+        packed["frames"].push_back({json_or_null(frame.wrong_ratio), json_or_null(frame.flip_ratio),
+                                    frame.angle, frame.frame_ms, frame.shadow_map_ms, frame.maps});
+    }
+    return packed;
+}
+
+path_record unpack_path(const json& packed) {
+    path_record path{packed.at("scene"),
+                     packed.at("camera"),
+                     packed.at("light"),
+                     packed.at("path"),
+                     packed.at("method"),
+                     packed.at("map"),
+                     {}};
+    for (const json& frame : packed.at("frames")) {
+        path.frames.push_back({read_or_nothing<double>(frame.at(0)),
+                               read_or_nothing<double>(frame.at(1)), frame.at(2), frame.at(3),
+                               frame.at(4), frame.at(5)});
+    }
+    return path;
+}
+
 } // namespace
 
 std::string archive_name(std::initializer_list<std::string> parts) {
@@ -198,6 +225,32 @@ std::optional<archived_view> read_archive(std::span<const std::uint8_t> bytes,
             view.pictures.runs.push_back(unpack_pictures(each));
         }
         return view;
+    } catch (const json::exception&) {
+        return std::nullopt; // cut off in the middle, or no archive at all
+    }
+}
+
+std::vector<std::uint8_t> archive_of(std::span<const path_record> paths,
+                                     const std::string& settings) {
+    json packed = {{"settings", settings}, {"paths", json::array()}};
+    for (const path_record& path : paths) {
+        packed["paths"].push_back(pack(path));
+    }
+    return json::to_cbor(packed);
+}
+
+std::optional<std::vector<path_record>> read_path_archive(std::span<const std::uint8_t> bytes,
+                                                          const std::string& settings) {
+    try {
+        const json packed = json::from_cbor(bytes.begin(), bytes.end());
+        if (packed.at("settings") != settings) {
+            return std::nullopt;
+        }
+        std::vector<path_record> paths;
+        for (const json& path : packed.at("paths")) {
+            paths.push_back(unpack_path(path));
+        }
+        return paths;
     } catch (const json::exception&) {
         return std::nullopt; // cut off in the middle, or no archive at all
     }

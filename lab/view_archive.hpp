@@ -1,4 +1,4 @@
-// What was measured and seen of one view, as a file that a later run goes on from.
+// What was measured and seen of one view or path, as a file that a later run goes on from.
 #pragma once
 
 #include "lab/report.hpp"
@@ -28,6 +28,14 @@ std::string archive_name(std::initializer_list<std::string> parts);
 
 /// An archive; `settings` says what its records were measured with.
 std::vector<std::uint8_t> archive_of(const archived_view& view, const std::string& settings);
+
+/// An archive of methods along a path.
+std::vector<std::uint8_t> archive_of(std::span<const path_record> paths,
+                                     const std::string& settings);
+
+/// What such an archive holds; nothing where it is empty, broken or of other settings.
+std::optional<std::vector<path_record>> read_path_archive(std::span<const std::uint8_t> bytes,
+                                                          const std::string& settings);
 
 /// What an archive holds; nothing where it is empty, broken or of other settings.
 std::optional<archived_view> read_archive(std::span<const std::uint8_t> bytes,

@@ -30,7 +30,12 @@ def gather(source):
     runs = [{**{k: r[k] for k in keys if k in r}, "frame_ms": round(r["frame_ms"]["median"], 3)}
             for r in results["runs"]]
     kept = {"device": results["device"], "view": results["runs"][0]["view"],
-            "frames": results["runs"][0]["frame_ms"]["n"], "accuracy": results["accuracy"]}
+            "frames": max(r["frame_ms"]["n"] for r in results["runs"]),
+            "accuracy": results["accuracy"],
+            "paths": [{**{k: p[k] for k in ("scene", "camera", "light", "path", "method", "map")},
+                       "frames": len(p["frames"]), "flip_ratio": p["mean"]["flip_ratio"],
+                       "wrong_pixel_ratio": p["mean"]["wrong_pixel_ratio"]}
+                      for p in results["paths"]]}
     text = json.dumps(kept, indent=1)[:-2] + ',\n "runs": [\n'
     text += ",\n".join("  " + json.dumps(run) for run in runs) + "\n ]\n}\n"
     (FOLDER / "sweep.json").write_text(text)
@@ -157,6 +162,22 @@ def doubling(sweep):
             "and sizes): " + ", ".join(f"`{m}` {times(mean(r))}" for m, r in ratios.items()) + ".\n")
 
 
+def temporal(sweep):
+    """What flips while the camera turns, in every thousand pixels."""
+    paths = sweep.get("paths")
+    if not paths:
+        return UNMEASURED
+    methods = list(dict.fromkeys(p["method"] for p in paths))
+    lines = [row(["view", *(f"`{m}`" for m in methods)]), row(["---"] + ["--:"] * len(methods))]
+    for scene, light in dict.fromkeys((p["scene"], p["light"]) for p in paths):
+        of = {p["method"]: p for p in paths if (p["scene"], p["light"]) == (scene, light)}
+        lines.append(row([f"{scene}, {light}", *(
+            f"{1000 * of[m]['flip_ratio']:.2f}" if m in of else "" for m in methods)]))
+    first = paths[0]
+    return (f"`--path {first['path']}`, {first['frames']} frames, maps of {first['map']}²:\n\n"
+            + "\n".join(lines) + "\n")
+
+
 def variants(sweep):
     """What is varied one by one, against the same method without."""
     scores = sweep["accuracy"].get("variants")
@@ -199,7 +220,8 @@ def main():
     script = "docs/accuracy/write_page.py"
     fill(PAGE, {"answer": answer(sweep), "doubling": doubling(sweep), "scores": scores(sweep), "exact": exact(sweep),
                 "equal": equal_quality(sweep),
-                "equal-time": equal_time(sweep), "variants": variants(sweep)}, script, check)
+                "equal-time": equal_time(sweep), "temporal": temporal(sweep),
+                "variants": variants(sweep)}, script, check)
     fill(README, {"accuracy": answer(sweep, {"all"})}, script, check)
 
 

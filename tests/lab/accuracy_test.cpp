@@ -248,6 +248,41 @@ TEST_CASE("archives: what goes in comes out, and nothing of other settings or br
     }
 }
 
+TEST_CASE("archives of paths: what goes in comes out, and nothing of broken bytes") {
+    const std::vector<lab::path_record> paths{
+        {"a", "0", "1", "yaw", "dv", 512, {{0.25, std::nullopt, 0.5, 3.0, 1.0, 1}}},
+        {"a", "0", "1", "yaw", "sm", 512, {{std::nullopt, 0.125, 0.0, 4.0, 2.0, 6}}}};
+    const std::vector<std::uint8_t> bytes = lab::archive_of(std::span(paths), "settings");
+    const auto back = lab::read_path_archive(bytes, "settings");
+    REQUIRE(back);
+    lab::results before;
+    before.paths = paths;
+    lab::results after;
+    after.paths = *back;
+    REQUIRE(lab::json_of(before) == lab::json_of(after));
+    REQUIRE_FALSE(lab::read_path_archive(bytes, "others"));
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+        REQUIRE_FALSE(lab::read_path_archive(std::span(bytes).first(size), "settings"));
+    }
+}
+
+TEST_CASE("sweeps: a camera moves with the methods that the sweep runs and the light allows") {
+    lab::options wanted = lab::options_of_sweep("short");
+    wanted.methods = {"notw", "sm", "stable", "sdsm"};
+    wanted.maps = {64, 256};
+    lab::settle_motion(wanted);
+    const lab::light_view sun{"sun", warpshadow::sun(glm::dvec3(0.0, -1.0, 0.0))};
+    const auto moves = lab::options_of_motion(wanted, sun);
+    REQUIRE(moves);
+    REQUIRE(moves->methods == std::vector<std::string>{"sm", "stable", "notw"});
+    REQUIRE(moves->maps == std::vector<int>{64});
+    REQUIRE(moves->path == "yaw");
+    REQUIRE(moves->variants.empty());
+    const lab::light_view lamp{"lamp", warpshadow::point_light(glm::dvec3(0.0))};
+    REQUIRE_FALSE(lab::options_of_motion(wanted, lamp));
+    REQUIRE_FALSE(lab::options_of_motion(lab::options{}, sun));
+}
+
 TEST_CASE("sweeps: both name methods and sizes, and nothing else is a sweep") {
     REQUIRE(lab::options_of_sweep("short").rounds > 1);
     REQUIRE(lab::options_of_sweep("full").maps.size() > lab::options_of_sweep("short").maps.size());

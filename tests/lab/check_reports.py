@@ -504,8 +504,19 @@ def check_sweep():
     errors = [b["wrong_pixel_ratio"] for b in best]
     assert errors == sorted(errors, reverse=True), "more time is never worse"
     html = (scratch / "sweep" / "report.html").read_text()
-    assert "Which method to take" in html and html.count("<svg") == 2 * html.count("<section>") == 4
-    assert html.count('class="compare"') == 2
+    # two views with two plots each, and a path with six
+    assert "Which method to take" in html and html.count("<section>") == 3
+    assert html.count("<svg") == 2 * 2 + 6 and html.count('class="compare"') == 2
+    assert "pixels that flip" in html
+    paths = {p["method"]: p for p in results["paths"]}
+    assert list(paths) == ["sm", "dv", "fitted", "notw"]
+    for path in paths.values():
+        assert (path["path"], path["camera"], path["map"]) == ("yaw", "0", 512)
+        assert len(path["frames"]) == 12
+        still = next(r for r in runs if (r["camera"], r["method"], r["map"])
+                     == ("0", path["method"], 512))
+        assert path["frames"][0]["wrong_pixel_ratio"] == still["wrong_pixel_ratio"]
+    assert paths["sm"]["mean"]["flip_ratio"] == 0 < paths["dv"]["mean"]["flip_ratio"]
     shutil.rmtree(scratch / "sweep")
 
 
