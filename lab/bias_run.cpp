@@ -5,7 +5,8 @@
 namespace lab {
 
 void run_method(run_record& record, renderer& gpu, const view_request& request,
-                const g_buffer_samples& samples, std::span<const std::uint8_t> truth) {
+                const g_buffer_samples& samples, std::span<const std::uint8_t> truth,
+                std::shared_ptr<standing_view>* kept) {
     view_request settled = request;
     if (settled.bias && settled.bias->kind == bias_kind::constant && !settled.bias->value) {
         view_request first = settled;
@@ -14,7 +15,7 @@ void run_method(run_record& record, renderer& gpu, const view_request& request,
         first.repeat = 1;
         settled.bias->value = least_constant(samples, truth, gpu.run(record.method, first).biases);
     }
-    record.result = gpu.run(record.method, settled);
+    record.result = gpu.run(record.method, settled, kept);
     record.against_truth = compare(samples, truth, record.result.shadowed);
     if (settled.bias) {
         record.bias = settled.bias->label;

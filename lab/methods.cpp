@@ -43,6 +43,10 @@ int used_maps(const light_maps& chosen) {
 
 } // namespace
 
+std::size_t bytes_of(const standing_view& view) {
+    return view.maps.bytes();
+}
+
 struct renderer::state : method_frames {
     state(const scene& world, glm::ivec2 view) : method_frames(world, view), seen_before(view) {}
 
@@ -158,7 +162,8 @@ g_buffer_samples renderer::samples(const camera_view& camera, const light_view& 
     return result;
 }
 
-method_result renderer::run(std::string_view name, const view_request& request) {
+method_result renderer::run(std::string_view name, const view_request& request,
+                            std::shared_ptr<standing_view>* kept) {
     state& s = *state_;
     if (!has_maps(name)) {
         return s.volumes.run(s.seen, request);
@@ -178,7 +183,8 @@ method_result renderer::run(std::string_view name, const view_request& request) 
     }
     result.cpu_setup_us.emplace_back("light matrix", median(set_up_us));
 
-    standing_view view = s.prepare(how, request);
+    const auto held = std::make_shared<standing_view>(s.prepare(how, request));
+    standing_view& view = *held;
     map_resources& maps = view.maps;
     light_maps& chosen = view.chosen;
     time_frames(
@@ -232,14 +238,20 @@ method_result renderer::run(std::string_view name, const view_request& request) 
         result.texels = metric_of(extents, maps.size, s.gpu.view());
         result.texels->finest = finest_of(maps, chosen, request.tables.over(how.tables));
     }
-    result.pictures = s.pictures(how, request, chosen, maps);
-    if (result.texels) {
-        result.pictures.push_back(heat_map(extents, s.gpu.view()));
+    if (request.pictures) {
+        result.pictures = s.pictures(how, request, chosen, maps);
+        if (result.texels) {
+            result.pictures.push_back(heat_map(extents, s.gpu.view()));
+        }
+    }
+    if (kept != nullptr) {
+        *kept = held;
     }
     return result;
 }
 
-std::vector<double> renderer::more_frames(std::string_view name, const view_request& request) {
+std::vector<double> renderer::more_frames(std::string_view name, const view_request& request,
+                                          standing_view* kept) {
     state& s = *state_;
     if (!has_maps(name)) {
         const auto frame = [&] { s.volumes.frame(s.seen, request.camera, request.light); };
@@ -247,8 +259,11 @@ std::vector<double> renderer::more_frames(std::string_view name, const view_requ
         return time_frames(s.gpu, request.repeat, frame);
     }
     const method& how = find_method(name);
-    standing_view view = s.prepare(how, request);
-    return time_frames(s.gpu, request.repeat, [&] { s.draw(how, request, view, false); });
+    std::optional<standing_view> fresh;
+    if (kept == nullptr) {
+        kept = &fresh.emplace(s.prepare(how, request));
+    }
+    return time_frames(s.gpu, request.repeat, [&] { s.draw(how, request, *kept, false); });
 }
 
 moving_frame renderer::next_frame(std::string_view name, const view_request& request,

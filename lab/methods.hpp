@@ -37,6 +37,7 @@ struct view_request {
     warp_wishes tables = {};                          ///< for methods with warp tables
     const std::vector<std::uint8_t>* truth = nullptr; ///< for methods that are told it
     precision set_up = precision::in_double;          ///< of the steps on the host
+    bool pictures = true;                             ///< that explain the method
 };
 
 /// View samples, row 0 at the bottom of the picture.
@@ -112,6 +113,12 @@ struct method_memory {
     light_memory light;
 };
 
+/// What a method draws again and again for a camera that stands still, ready for the next frame.
+struct standing_view;
+
+/// Bytes on the device that it holds.
+std::size_t bytes_of(const standing_view& view);
+
 /// Holds one scene on the GPU and renders its G-buffer and shadows.
 class renderer {
   public:
@@ -123,11 +130,15 @@ class renderer {
     g_buffer_samples samples(const camera_view& camera, const light_view& light);
 
     /// Runs a method other than "raytraced", which needs no GPU.
-    method_result run(std::string_view method, const view_request& request);
+    /// @param[out] kept where not null: what `more_frames` goes on with; null for "sv"
+    method_result run(std::string_view method, const view_request& request,
+                      std::shared_ptr<standing_view>* kept = nullptr);
 
     /// Times of as many frames more as the request repeats, and nothing else: `run` in rounds lets
     /// what drifts on a machine hit all methods alike.
-    std::vector<double> more_frames(std::string_view method, const view_request& request);
+    /// @param kept of a `run` of the same request; null: all is made again, and warmed up
+    std::vector<double> more_frames(std::string_view method, const view_request& request,
+                                    standing_view* kept = nullptr);
 
     /// The next frame of a camera that moves; `repeat` does not count. The samples of the frame
     /// before are those of the last `remember_view`.

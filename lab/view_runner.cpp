@@ -8,7 +8,9 @@
 #include "lab/view_arguments.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -83,6 +85,14 @@ std::vector<double> trace(method_result& result, const ray_tracer& rays,
     return frames;
 }
 
+/// Memory of the device that runs may hold from round to round.
+constexpr std::size_t most_standing_bytes = std::size_t(1) << 29;
+
+/// Whether frames agree so well that another one would not move their median much.
+bool is_settled(const method_result& result) {
+    return result.frame_ms_max <= 1.02 * result.frame_ms_min;
+}
+
 /// One view with everything that its runs share.
 class view_runner {
   public:
@@ -95,25 +105,33 @@ class view_runner {
 
     view_pictures run() {
         const std::size_t first = all_.runs.size();
-        for (const planned_run& each : plan_) {
-            begin(each);
-            all_.runs.push_back(measured(each));
+        standing_.resize(plan_.size());
+        for (std::size_t i = 0; i < plan_.size(); ++i) {
+            begin(plan_[i]);
+            all_.runs.push_back(measured(plan_[i], standing_[i]));
             progress_.advance();
         }
         for (int round = 1; round < wanted_.rounds; ++round) {
             for (std::size_t i = 0; i < plan_.size(); ++i) {
                 begin(plan_[i]);
                 method_result& result = all_.runs[first + i].result;
-                add_times(result, traces(plan_[i])
-                                      ? trace(result, rays_, samples_, light_, wanted_.repeat)
-                                      : gpu_.more_frames(plan_[i].method, request(plan_[i])));
+                if (round == 1 || !is_settled(result)) {
+                    add_times(result, more_frames(i, result));
+                }
                 progress_.advance();
             }
         }
+        standing_.clear();
         return pictures(first);
     }
 
   private:
+    std::vector<double> more_frames(std::size_t i, method_result& result) {
+        return traces(plan_[i])
+                   ? trace(result, rays_, samples_, light_, wanted_.repeat)
+                   : gpu_.more_frames(plan_[i].method, request(plan_[i]), standing_[i].get());
+    }
+
     static bool traces(const planned_run& each) { return each.method == "raytraced"; }
 
     void begin(const planned_run& each) {
@@ -126,7 +144,8 @@ class view_runner {
         view_request result{
             camera_,        light_,         each.map,         wanted_.seed,
             wanted_.repeat, each.bias,      wanted_.filter,   each.raster.value_or(raster_choice{}),
-            &rays_,         wanted_.tables, &truth_.shadowed, wanted_.set_up};
+            &rays_,         wanted_.tables, &truth_.shadowed, wanted_.set_up,
+            is_shown(each)};
         if (each.variant != nullptr) {
             result.tables = each.variant->tables;
             result.filter = each.variant->filter.value_or(wanted_.filter);
@@ -135,7 +154,14 @@ class view_runner {
         return result;
     }
 
-    run_record measured(const planned_run& each) {
+    /// Whether a run has pictures in the report.
+    bool is_shown(const planned_run& each) const {
+        return !traces(each) && each.variant == nullptr &&
+               (wanted_.pictured == 0 || each.map == 0 || each.map == wanted_.pictured);
+    }
+
+    /// @param[out] standing what later rounds go on with, while there is room for it
+    run_record measured(const planned_run& each, std::shared_ptr<standing_view>& standing) {
         run_record record{world_.name, camera_.label, light_.label, each.method, each.map, {}, {}};
         record.kind = kind_text(light_.light.kind);
         if (traces(each)) {
@@ -146,7 +172,15 @@ class view_runner {
             return record;
         }
         const view_request asked = request(each);
-        run_method(record, gpu_, asked, samples_, truth_.shadowed);
+        run_method(record, gpu_, asked, samples_, truth_.shadowed,
+                   wanted_.rounds > 1 ? &standing : nullptr);
+        if (standing) {
+            standing_bytes_ += bytes_of(*standing);
+            if (standing_bytes_ > most_standing_bytes) {
+                standing_bytes_ -= bytes_of(*standing);
+                standing.reset();
+            }
+        }
         if (each.raster) {
             record.raster = raster_name(*each.raster);
         }
@@ -195,9 +229,7 @@ class view_runner {
         for (std::size_t i = first; i < all_.runs.size(); ++i) {
             run_record& run = all_.runs[i];
             run_pictures seen{i, {}, {}, {}, {}};
-            const bool shown =
-                run.method != "raytraced" && !run.variant &&
-                (wanted_.pictured == 0 || run.map == 0 || run.map == wanted_.pictured);
+            const bool shown = is_shown(plan_[i - first]);
             if (shown) {
                 const std::string map =
                     run.map == 0 ? std::string() : "m" + std::to_string(run.map) + "-";
@@ -253,6 +285,8 @@ class view_runner {
     g_buffer_samples samples_;
     traced_shadows truth_;
     std::vector<planned_run> plan_;
+    std::vector<std::shared_ptr<standing_view>> standing_; ///< of each run, or null
+    std::size_t standing_bytes_ = 0;
 };
 
 } // namespace

@@ -59,7 +59,7 @@ def mean(ratios):
 
 def about(sweep):
     width, height = sweep["view"]
-    return (f"{width} × {height} pixels, median of {sweep['frames']} frames in as many rounds, on "
+    return (f"{width} × {height} pixels, median of up to {sweep['frames']} frames, a round each, on "
             f"{sweep['device']['renderer'].split(' (')[0]}")
 
 

@@ -483,8 +483,12 @@ def check_sweep():
     assert not unfinished.exists() and not list((scratch / "sweep").glob("*.cbor"))
     results = json.loads((scratch / "sweep" / "results.json").read_text())
     runs = results["runs"]
-    assert [r["frame_ms"]["n"] for r in runs] == [3] * len(runs)
-    taken = [t for r in runs if r["camera"] == "0" for t in (r["frame_ms"]["median"],)]
+    # the third round leaves out what two settled
+    for entry in runs:
+        times = entry["frame_ms"]
+        assert times["n"] == 3 or (times["n"] == 2 and times["max"] <= 1.02 * times["min"]), entry
+    taken = [t for r in runs if r["camera"] == "0"
+             for t in (r["frame_ms"]["min"], r["frame_ms"]["max"])]
     assert all(struct.pack(">d", t) in first for t in taken), "times of the first attempt"
     for method in dict.fromkeys(r["method"] for r in runs if r["map"]):
         of_size = {m: sum(r["wrong_pixel_ratio"] for r in runs if r["method"] == method
