@@ -151,7 +151,8 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");
     list("--bias", biases, "Comma-separated biases to compare (plane, and not measured)");
     app.add_option("--filter", filter,
-                   "Shadows in the pictures, see below; wrong pixels are counted without (none)");
+                   "Shadows in the pictures and in the times, see below; wrong pixels are counted "
+                   "without (none)");
     list("--raster", rasters,
          "Comma-separated ways to draw maps with tables, to compare (exact); see below");
     std::string set_up;
