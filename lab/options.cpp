@@ -201,9 +201,6 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         if (!(scenes.empty() && lights.empty())) {
             result.point_lights.clear();
         }
-        if (!(wanted.empty() && maps.empty())) {
-            result.variants.clear();
-        }
     }
     result.tables = warp_wishes_of(tables);
     if (!set_up.empty()) {
@@ -335,7 +332,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     }
     if (!result.sweep.empty()) {
         result.pictured = pictured_size(result);
-        settle_motion(result);
+        settle_sweep(result);
     }
     if (result.out.empty()) {
         throw bad_input("--out wants a folder");

@@ -110,15 +110,20 @@ int pictured_size(const options& wanted) {
     return usual ? 512 : *std::min_element(wanted.maps.begin(), wanted.maps.end());
 }
 
-void settle_motion(options& wanted) {
-    if (!wanted.moves) {
-        return;
-    }
-    std::erase_if(wanted.moves->methods, [&](const std::string& method) {
+void settle_sweep(options& wanted) {
+    const auto is_left_out = [&](const std::string& method) {
         return std::find(wanted.methods.begin(), wanted.methods.end(), method) ==
                wanted.methods.end();
-    });
-    wanted.moves->map = pictured_size(wanted);
+    };
+    std::erase_if(wanted.variants,
+                  [&](const run_variant& variant) { return is_left_out(variant.method); });
+    for (run_variant& variant : wanted.variants) {
+        variant.map = pictured_size(wanted);
+    }
+    if (wanted.moves) {
+        std::erase_if(wanted.moves->methods, is_left_out);
+        wanted.moves->map = pictured_size(wanted);
+    }
 }
 
 std::optional<options> options_of_motion(const options& wanted, const light_view& light) {

@@ -23,8 +23,8 @@ options options_of_sweep(const std::string& name);
 /// The size at which a sweep shows pictures and matches qualities: 512, or the smallest asked for.
 int pictured_size(const options& wanted);
 
-/// Moves only methods that the sweep runs, at the size of its pictures.
-void settle_motion(options& wanted);
+/// Leaves variants and moves of no other methods than the sweep runs, at the size of its pictures.
+void settle_sweep(options& wanted);
 
 /// What of a sweep is its moving camera, as options of a path; nothing where no method of it can do
 /// the light.

@@ -266,11 +266,11 @@ TEST_CASE("archives of paths: what goes in comes out, and nothing of broken byte
     }
 }
 
-TEST_CASE("sweeps: a camera moves with the methods that the sweep runs and the light allows") {
+TEST_CASE("sweeps: variants and moves are of the methods that the sweep runs, and of its light") {
     lab::options wanted = lab::options_of_sweep("short");
     wanted.methods = {"notw", "sm", "stable", "sdsm"};
     wanted.maps = {64, 256};
-    lab::settle_motion(wanted);
+    lab::settle_sweep(wanted);
     const lab::light_view sun{"sun", warpshadow::sun(glm::dvec3(0.0, -1.0, 0.0))};
     const auto moves = lab::options_of_motion(wanted, sun);
     REQUIRE(moves);
@@ -278,6 +278,11 @@ TEST_CASE("sweeps: a camera moves with the methods that the sweep runs and the l
     REQUIRE(moves->maps == std::vector<int>{64});
     REQUIRE(moves->path == "yaw");
     REQUIRE(moves->variants.empty());
+    REQUIRE_FALSE(wanted.variants.empty());
+    for (const lab::run_variant& variant : wanted.variants) {
+        REQUIRE((variant.method == "notw" || variant.method == "sm" || variant.method == "stable"));
+        REQUIRE(variant.map == 64);
+    }
     const lab::light_view lamp{"lamp", warpshadow::point_light(glm::dvec3(0.0))};
     REQUIRE_FALSE(lab::options_of_motion(wanted, lamp));
     REQUIRE_FALSE(lab::options_of_motion(lab::options{}, sun));

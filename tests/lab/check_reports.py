@@ -455,16 +455,16 @@ def figure_report(folder, *arguments):
 
 def check_sweep():
     """A sweep that is stopped goes on where it was; errors fall as maps grow."""
-    arguments = ["--sweep", "--scene", "leaves", "--camera", "0", "--camera", "1", "--view",
-                 "96x64", "--map", "32,128,512", "--methods",
-                 "sm,pssm,sdsm,dv,fitted,notw,sv,raytraced", "--out", "sweep"]
+    methods = "sm,pssm,sdsm,dv,fitted,notw,sv,raytraced"
+    arguments = ["--sweep", "--scene", "leaves", "--view", "96x64", "--map", "32,64,256", "--out",
+                 "sweep"]
     unfinished = scratch / ".sweep.unfinished"
 
     def stop_after_a_view(*more):
         """Stops a sweep when it has kept another view than stood there; returns what it kept."""
         before = [p.read_bytes() for p in unfinished.glob("*.cbor")]
-        going = subprocess.Popen([lab, *arguments, *more], cwd=scratch, stderr=subprocess.PIPE,
-                                 text=True)
+        going = subprocess.Popen([lab, *arguments, "--methods", *more], cwd=scratch,
+                                 stderr=subprocess.PIPE, text=True)
         while going.poll() is None and (
                 [p.read_bytes() for p in unfinished.glob("*.cbor")] in (before, [])):
             time.sleep(0.01)
@@ -474,11 +474,11 @@ def check_sweep():
         return kept.read_bytes()
 
     # what stands there of other options is measured again, not taken
-    other = stop_after_a_view("--window", "0.5")
-    first = stop_after_a_view()
+    other = stop_after_a_view("sm", "--seed", "2")
+    first = stop_after_a_view(methods)
     assert first != other
     assert not (scratch / "sweep").exists()
-    done = run(*arguments)
+    done = run(*arguments, "--methods", methods)
     assert done.returncode == 0, done.stderr
     assert not unfinished.exists() and not list((scratch / "sweep").glob("*.cbor"))
     results = json.loads((scratch / "sweep" / "results.json").read_text())
@@ -487,41 +487,61 @@ def check_sweep():
     for entry in runs:
         times = entry["frame_ms"]
         assert times["n"] == 3 or (times["n"] == 2 and times["max"] <= 1.02 * times["min"]), entry
-    taken = [t for r in runs if r["camera"] == "0"
-             for t in (r["frame_ms"]["min"], r["frame_ms"]["max"])]
+    taken = [t for r in runs for t in (r["frame_ms"]["min"], r["frame_ms"]["max"])]
     assert all(struct.pack(">d", t) in first for t in taken), "times of the first attempt"
     for method in dict.fromkeys(r["method"] for r in runs if r["map"]):
         of_size = {m: sum(r["wrong_pixel_ratio"] for r in runs if r["method"] == method
-                          and r["map"] == m) for m in (32, 128, 512)}
-        assert of_size[32] > of_size[128] > of_size[512], (method, of_size)
+                          and r["map"] == m and "variant" not in r) for m in (32, 64, 256)}
+        assert of_size[32] > of_size[64] > of_size[256], (method, of_size)
+    html = (scratch / "sweep" / "report.html").read_text()
     accuracy = results["accuracy"]
-    assert accuracy["map"] == 512 and accuracy["scores"] and accuracy["equal_quality"]
+    assert accuracy["map"] == 32 and accuracy["scores"] and accuracy["equal_quality"]
     timed = {(r["camera"], r["method"], r["map"]): r for r in runs if "variant" not in r}
-    bought = [e for e in accuracy["equal_time"] if e["map"]]
-    assert {e["target"] for e in bought} == {"sm", "fitted", "notw"}
-    for entry in bought:
+    assert {e["target"] for e in accuracy["equal_time"]} == {"sm", "fitted", "notw"}
+    for entry in (e for e in accuracy["equal_time"] if e["map"]):
         one, target = (timed[entry["camera"], m, s] for m, s in
-                       ((entry["method"], entry["map"]), (entry["target"], 512)))
+                       ((entry["method"], entry["map"]), (entry["target"], 32)))
         assert one["frame_ms"]["median"] <= target["frame_ms"]["median"], entry
         assert abs(entry["wrong"] * target["wrong_pixel_ratio"] - one["wrong_pixel_ratio"]) < 1e-9
+    check_variants(accuracy["variants"], runs, html)
     best = [b for b in accuracy["budgets"] if b["scene"] == "leaves"]
     errors = [b["wrong_pixel_ratio"] for b in best]
     assert errors == sorted(errors, reverse=True), "more time is never worse"
-    html = (scratch / "sweep" / "report.html").read_text()
-    # two views with two plots each, and a path with six
-    assert "Which method to take" in html and html.count("<section>") == 3
-    assert html.count("<svg") == 2 * 2 + 6 and html.count('class="compare"') == 2
+    # a view with two plots, and a path with six
+    assert "Which method to take" in html and html.count("<section>") == 2
+    assert html.count("<svg") == 2 + 6 and html.count('class="compare"') == 1
     assert "pixels that flip" in html
     paths = {p["method"]: p for p in results["paths"]}
     assert list(paths) == ["sm", "dv", "fitted", "notw"]
     for path in paths.values():
-        assert (path["path"], path["camera"], path["map"]) == ("yaw", "0", 512)
+        assert (path["path"], path["camera"], path["map"]) == ("yaw", "0", 32)
         assert len(path["frames"]) == 12
         still = next(r for r in runs if (r["camera"], r["method"], r["map"])
-                     == ("0", path["method"], 512))
+                     == ("0", path["method"], 32) and "variant" not in r)
         assert path["frames"][0]["wrong_pixel_ratio"] == still["wrong_pixel_ratio"]
     assert paths["sm"]["mean"]["flip_ratio"] == 0 < paths["dv"]["mean"]["flip_ratio"]
     shutil.rmtree(scratch / "sweep")
+
+
+def check_variants(scores, runs, html):
+    """One thing changed at a time: what must change, and what must not."""
+    of = {(s["method"], s["variant"]): s for s in scores}
+    assert set(of) == {(r["method"], r["variant"]) for r in runs if "variant" in r}
+    assert all(s["views"] == 1 and s["frame_time"] > 0 for s in scores)
+    assert "One thing at a time" in html and all(f"<td>{name}</td>" in html for _, name in of)
+    for (method, name), score in of.items():
+        if name == "float":
+            # the same matrices but for rounding
+            assert abs(score["wrong"] - 1) < 0.01 and score["bytes"] == 1, (method, score)
+            assert all(r["setup"] == "float" for r in runs if r.get("variant") == name)
+        assert (score["light_error"] is not None) == name.startswith("filter "), name
+    assert {m for m, name in of if name == "float"} == {"sm", "dv", "fitted", "notw"}
+    # half a step of 16 bits is 1/4096 of a texel here
+    assert abs(of["notw", "unorm16"]["wrong"] - 1) < 0.02 and of["notw", "unorm16"]["bytes"] < 1
+    assert of["notw", "raster none"]["wrong"] > 1.1 > of["notw", "raster bound:0.25"]["wrong"]
+    # hard edges err by all of the light at a pixel, soft ones by a part of it, in more pixels
+    for name in ("filter pcf", "filter pcf-texels:2"):
+        assert of["notw", name]["light_error"] > of["notw", name]["wrong"] > 0
 
 
 def check_files_as_scenes():
