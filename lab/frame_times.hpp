@@ -24,10 +24,13 @@ template <typename Frame> std::vector<double> time_frames(passes& gpu, int repea
     return frames;
 }
 
-/// The same, then a few times pass by pass, for a result.
+/// The same for a result, then a few times pass by pass if that is asked for.
 template <typename Frame>
-void time_frames(passes& gpu, int repeat, Frame frame, method_result& result) {
+void time_frames(passes& gpu, int repeat, Frame frame, method_result& result, bool pass_by_pass) {
     add_times(result, time_frames(gpu, repeat, frame));
+    if (!pass_by_pass) {
+        return;
+    }
     std::map<std::string, std::vector<double>> times;
     gpu.time_into(&times);
     for (int i = 0; i < std::min(repeat, 3); ++i) {

@@ -188,7 +188,7 @@ method_result renderer::run(std::string_view name, const view_request& request,
     map_resources& maps = view.maps;
     light_maps& chosen = view.chosen;
     time_frames(
-        s.gpu, request.repeat, [&] { s.draw(how, request, view, false); }, result);
+        s.gpu, request.repeat, [&] { s.draw(how, request, view, false); }, result, request.details);
     if (how.fitted) {
         result.cpu_setup_us.emplace_back("fit", median(s.fit_us));
     }
@@ -238,7 +238,7 @@ method_result renderer::run(std::string_view name, const view_request& request,
         result.texels = metric_of(extents, maps.size, s.gpu.view());
         result.texels->finest = finest_of(maps, chosen, request.tables.over(how.tables));
     }
-    if (request.pictures) {
+    if (request.details) {
         result.pictures = s.pictures(how, request, chosen, maps);
         if (result.texels) {
             result.pictures.push_back(heat_map(extents, s.gpu.view()));

@@ -37,7 +37,7 @@ struct view_request {
     warp_wishes tables = {};                          ///< for methods with warp tables
     const std::vector<std::uint8_t>* truth = nullptr; ///< for methods that are told it
     precision set_up = precision::in_double;          ///< of the steps on the host
-    bool pictures = true;                             ///< that explain the method
+    bool details = true; ///< pictures that explain the method, and times pass by pass
 };
 
 /// View samples, row 0 at the bottom of the picture.

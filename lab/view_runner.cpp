@@ -90,7 +90,7 @@ constexpr std::size_t most_standing_bytes = std::size_t(1) << 29;
 
 /// Whether frames agree so well that another one would not move their median much.
 bool is_settled(const method_result& result) {
-    return result.frame_ms_max <= 1.02 * result.frame_ms_min;
+    return result.frame_ms_max <= 1.05 * result.frame_ms_min;
 }
 
 /// One view with everything that its runs share.
@@ -154,7 +154,7 @@ class view_runner {
         return result;
     }
 
-    /// Whether a run has pictures in the report.
+    /// Whether a run has pictures in the report, and times pass by pass.
     bool is_shown(const planned_run& each) const {
         return !traces(each) && each.variant == nullptr &&
                (wanted_.pictured == 0 || each.map == 0 || each.map == wanted_.pictured);

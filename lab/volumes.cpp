@@ -148,7 +148,7 @@ method_result volume_passes::run(g_buffer& seen, const view_request& request) {
     const auto draw = [&] { frame(seen, request.camera, request.light); };
     draw(); // warms up
     glFinish();
-    time_frames(gpu_, request.repeat, draw, result);
+    time_frames(gpu_, request.repeat, draw, result, request.details);
     gl::check("shadow volumes");
     result.cpu_setup_us.emplace_back("edges, once per scene", 1e3 * edges_ms_);
     result.shadowed = gpu_.shadowed();

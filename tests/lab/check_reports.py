@@ -486,7 +486,7 @@ def check_sweep():
     # the third round leaves out what two settled
     for entry in runs:
         times = entry["frame_ms"]
-        assert times["n"] == 3 or (times["n"] == 2 and times["max"] <= 1.02 * times["min"]), entry
+        assert times["n"] == 3 or (times["n"] == 2 and times["max"] <= 1.05 * times["min"]), entry
     taken = [t for r in runs for t in (r["frame_ms"]["min"], r["frame_ms"]["max"])]
     assert all(struct.pack(">d", t) in first for t in taken), "times of the first attempt"
     for method in dict.fromkeys(r["method"] for r in runs if r["map"]):
