@@ -50,6 +50,7 @@ void triangle_lists::cut(const gl::program& cut, int rounds) {
         if (waiting[source] == 0) {
             return;
         }
+        most_waiting_ = std::max(most_waiting_, waiting[source]);
         const std::uint32_t zero = 0;
         counters_.write(offsetof(triangle_counts, waiting) + (1 - source) * sizeof zero,
                         sizeof zero, &zero);
@@ -74,6 +75,11 @@ void triangle_lists::count() {
     counted_.push_back(counters_.read<triangle_counts>().front());
 }
 
+void triangle_lists::forget_counts() {
+    counted_.clear();
+    most_waiting_ = 0;
+}
+
 bool triangle_lists::lost_some() const {
     return any_of(counted_, &triangle_counts::lost);
 }
@@ -92,7 +98,11 @@ bool triangle_lists::grow() {
 }
 
 std::size_t triangle_lists::bytes() const {
-    return ready_.bytes() + waiting_[0].bytes() + waiting_[1].bytes();
+    std::size_t ready = 0;
+    for (const triangle_counts& each : counted_) {
+        ready = std::max<std::size_t>(ready, each.vertex_count / 3);
+    }
+    return (ready + waiting_.size() * most_waiting_) * piece_bytes_;
 }
 
 } // namespace lab

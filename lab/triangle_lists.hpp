@@ -43,7 +43,7 @@ class triangle_lists {
 
     /// Reads back how many there were, for `grow`.
     void count();
-    void forget_counts() { counted_.clear(); }
+    void forget_counts();
     /// Of the maps drawn since they were last forgotten.
     [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }
     /// What `grow` would find too small.
@@ -51,6 +51,8 @@ class triangle_lists {
     /// Doubles the lists that were too small for what was counted; false if none was, or if they
     /// are as large as they may be.
     bool grow();
+    /// Bytes that the maps drawn since then needed, one after the other; other maps before may have
+    /// made the lists longer.
     [[nodiscard]] std::size_t bytes() const;
 
   private:
@@ -61,6 +63,7 @@ class triangle_lists {
     std::array<gl::buffer, 2> waiting_;
     gl::vertex_array nothing_;
     std::vector<triangle_counts> counted_;
+    std::uint32_t most_waiting_ = 0; ///< at once, since counts were forgotten
 };
 
 } // namespace lab

@@ -214,6 +214,14 @@ void warped_raster::trace_map(map_resources& maps, std::size_t index, const ray_
                     1, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
 }
 
+std::size_t warped_raster::list_bytes() const {
+    std::size_t sources = 0;
+    for (const triangle_counts& each : lists_.counted()) {
+        sources = std::max<std::size_t>(sources, each.sources);
+    }
+    return sources * source_bytes + lists_.bytes();
+}
+
 bool warped_raster::grow_lists() {
     // what was lost is a source or a piece: both lists grow
     const bool lost = lists_.lost_some();

@@ -58,7 +58,7 @@ class warped_raster {
     bool grow_lists();
     void forget_counts() { lists_.forget_counts(); }
     [[nodiscard]] const std::vector<triangle_counts>& counted() const { return lists_.counted(); }
-    [[nodiscard]] std::size_t list_bytes() const { return sources_.bytes() + lists_.bytes(); }
+    [[nodiscard]] std::size_t list_bytes() const;
     /// What the last tables were predicted to do to the side of the texels in view.
     [[nodiscard]] float mean_side() const { return mean_side_; }
 

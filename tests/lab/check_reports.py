@@ -300,6 +300,14 @@ def check_table_formats():
         assert of_float["m"] != of_half["m"], "it must show"
 
 
+def check_bytes():
+    """What a run needs of memory does not depend on the runs before it."""
+    arguments = ["--scene", "leaves", "--map", "256", "--methods", "notw", "--raster"]
+    _, after = report("after", *arguments, "bound:0.1,exact")["runs"]
+    (alone,) = report("alone", *arguments, "exact")["runs"]
+    assert after["bytes"] == alone["bytes"]
+
+
 def check_set_up():
     """Matrices at float are those at double but for rounding, which few pixels see."""
     differ = 0
@@ -606,7 +614,7 @@ PARTS = {
     "folders": (check_help, check_folders, check_files_as_scenes, check_finer_scene, check_views),
     "methods": (check_every_method,),
     "lights": (check_spot_and_point, check_virtual_lights),
-    "tables": (check_tables, check_table_formats, check_set_up),
+    "tables": (check_tables, check_table_formats, check_bytes, check_set_up),
     "paths": (check_paths,),
     "biases": (check_biases,),
     "figures": (check_figures,),
