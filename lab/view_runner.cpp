@@ -60,11 +60,12 @@ std::vector<planned_run> plan_runs(const options& wanted, const light_view& ligh
                     result.push_back({method, map, bias, raster});
                 }
             }
-        }
-    }
-    for (const run_variant& variant : wanted.variants) {
-        if (!why_not(variant.method, light)) {
-            result.push_back({variant.method, variant.map, {}, variant.raster, &variant});
+            // beside what they are set against: a machine that drifts hits both alike
+            for (const run_variant& variant : wanted.variants) {
+                if (variant.method == method && variant.map == map) {
+                    result.push_back({method, map, {}, variant.raster, &variant});
+                }
+            }
         }
     }
     return result;
