@@ -16,7 +16,7 @@ inline void expect_values(int argc, char** argv, int most, const char* usage) {
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];
         help = help || argument == "--help" || argument == "-h";
-        wrong = wrong || argument.empty() || argument.front() == '-';
+        wrong = wrong || argument.starts_with('-');
     }
     if (help || wrong) {
         std::fprintf(help ? stdout : stderr, "usage: %s\n", usage);

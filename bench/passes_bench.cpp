@@ -3,12 +3,13 @@
 // A scene of 261,000 triangles, seen at 1024² pixels. Every round draws the G-buffer once and runs
 // every pipeline once, so that all share whatever the machine is doing; medians over the rounds.
 // The inverse of all texel centres follows, by strips of a column and by a search for each texel.
-// Usage: passes_bench [rounds] [part of a line's name, such as "tables 128"]
+// Usage: passes_bench [rounds] [part of a line's name, such as "tables 128"] [FILE.json]
 #include "arguments.hpp"
 #include "gl/context.hpp"
 #include "gl/mesh.hpp"
 #include "gl/objects.hpp"
 #include "gl/timer.hpp"
+#include "passes_scene.hpp"
 
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/fit.hpp>
@@ -17,16 +18,18 @@
 #include <warpshadow/smoothing.hpp>
 #include <warpshadow/warp_build.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
+#include <exception>
+#include <fstream>
 #include <functional>
-#include <limits>
 #include <list>
-#include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ws = warpshadow;
@@ -34,78 +37,6 @@ namespace ws = warpshadow;
 namespace {
 
 constexpr int view = 1024;
-
-struct scene {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    std::vector<glm::vec4> normals; ///< per triangle
-    ws::box3<double> box;
-};
-
-float height(float x, float z) {
-    return 4.0f * std::sin(x * 0.05f) * std::cos(z * 0.04f) +
-           0.6f * std::sin(x * 0.31f + z * 0.23f);
-}
-
-void add_box(scene& to, glm::vec3 lo, glm::vec3 hi) {
-    const auto first = static_cast<unsigned>(to.positions.size());
-    for (int i = 0; i < 8; ++i) {
-        to.positions.emplace_back((i & 1) != 0 ? hi.x : lo.x, (i & 2) != 0 ? hi.y : lo.y,
-                                  (i & 4) != 0 ? hi.z : lo.z);
-    }
-    constexpr std::array<std::array<unsigned, 4>, 6> faces{
-        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-    for (const auto& f : faces) {
-        to.triangles.emplace_back(first + f[0], first + f[1], first + f[2]);
-        to.triangles.emplace_back(first + f[0], first + f[2], first + f[3]);
-    }
-}
-
-/// Hills of 330 × 330 × 2 triangles with 3,600 boxes on them.
-scene make_scene() {
-    scene result;
-    constexpr unsigned cells = 330;
-    constexpr float extent = 200.0f;
-    for (unsigned j = 0; j <= cells; ++j) {
-        for (unsigned i = 0; i <= cells; ++i) {
-            const float x = extent * (static_cast<float>(i) / cells - 0.5f);
-            const float z = extent * (static_cast<float>(j) / cells - 0.5f);
-            result.positions.emplace_back(x, height(x, z), z);
-        }
-    }
-    for (unsigned j = 0; j < cells; ++j) {
-        for (unsigned i = 0; i < cells; ++i) {
-            const unsigned a = j * (cells + 1) + i;
-            const unsigned b = a + cells + 1;
-            result.triangles.emplace_back(a, b, b + 1);
-            result.triangles.emplace_back(a, b + 1, a + 1);
-        }
-    }
-    std::mt19937 random(7);
-    std::uniform_real_distribution<float> anywhere(-0.5f * extent, 0.5f * extent);
-    std::uniform_real_distribution<float> size(0.1f, 0.7f);
-    for (int i = 0; i < 3600; ++i) {
-        const float x = anywhere(random);
-        const float z = anywhere(random);
-        const float w = size(random);
-        const float h = 4.0f * size(random);
-        const float y = height(x, z);
-        add_box(result, {x - w, y - 1.0f, z - w}, {x + w, y + h, z + w});
-    }
-    glm::vec3 lo(std::numeric_limits<float>::max());
-    glm::vec3 hi = -lo;
-    for (const glm::vec3& p : result.positions) {
-        lo = glm::min(lo, p);
-        hi = glm::max(hi, p);
-    }
-    result.box = {glm::dvec3(lo), glm::dvec3(hi)};
-    for (const glm::uvec3& t : result.triangles) {
-        const glm::vec3 a = result.positions[t.x];
-        result.normals.emplace_back(
-            glm::normalize(glm::cross(result.positions[t.y] - a, result.positions[t.z] - a)), 0.0f);
-    }
-    return result;
-}
 
 constexpr const char* g_buffer_vertex = R"(#version 430 core
 layout(location = 0) in vec3 position;
@@ -182,7 +113,8 @@ double median(std::vector<double> values) {
 
 struct bench {
     bench() {
-        const glm::dvec3 eye(-60.0, static_cast<double>(height(-60.0f, 5.0f)) + 3.0, 5.0);
+        const glm::dvec3 eye(-60.0, static_cast<double>(passes_scene::height(-60.0f, 5.0f)) + 3.0,
+                             5.0);
         const ws::view_volume<double> volume = ws::perspective_volume(1.0, 1.0, 0.05, 400.0);
         const ws::frustum<double> frustum =
             ws::make_frustum(eye, glm::dvec3(1.0, -0.12, 0.1), glm::dvec3(0.0, 1.0, 0.0), volume)
@@ -214,7 +146,7 @@ struct bench {
         mesh.draw();
     }
 
-    scene world = make_scene();
+    passes_scene::scene world = passes_scene::make_scene();
     gl::mesh mesh{world.positions, world.triangles};
     gl::buffer normals, light;
     gl::texture position{GL_RGBA32F, view, view}, normal{GL_RGBA32F, view, view},
@@ -386,7 +318,23 @@ double time_once(pipeline& each, gl::stopwatch& watch) {
     return sum;
 }
 
-int run(int rounds, const std::string& part) {
+/// What was measured, times as ratios to the G-buffer pass.
+nlohmann::ordered_json json_of(const std::vector<pipeline>& all,
+                               const std::vector<std::vector<double>>& ratios, double g_buffer) {
+    nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        nlohmann::ordered_json line;
+        line["name"] = all[i].name;
+        line["ratio"] = median(ratios[i]);
+        for (std::size_t k = 0; k < all[i].steps.size(); ++k) {
+            line["steps"][all[i].steps[k].first] = median(all[i].times[k]) / g_buffer;
+        }
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+int run(int rounds, const std::string& part, const char* file) {
     const gl::headless_context context;
     bench b;
     b.draw_view();
@@ -472,16 +420,39 @@ int run(int rounds, const std::string& part) {
         }
         std::printf("%9.2f%9.3f\n", median(all[i].sums), median(ratios[i]));
     }
+    if (file != nullptr) {
+        nlohmann::ordered_json json;
+        json["renderer"] = context.info().renderer;
+        json["triangles"] = b.world.triangles.size();
+        json["view"] = view;
+        json["rounds"] = rounds;
+        json["g_buffer_ms"] = median(g_buffer);
+        json["lines"] = json_of(all, ratios, median(g_buffer));
+        std::ofstream out(file);
+        out << json.dump(1) << '\n';
+        if (!out.flush()) {
+            std::fprintf(stderr, "passes_bench: cannot write %s\n", file);
+            return 1;
+        }
+    }
     return 0;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    bench::expect_values(argc, argv, 2, "passes_bench [ROUNDS [TABLES]]");
+    constexpr const char* usage = "passes_bench [ROUNDS [PART OF A LINE'S NAME [FILE.json]]]";
+    bench::expect_values(argc, argv, 3, usage);
+    int rounds = 11;
+    const std::string_view first = argc > 1 ? argv[1] : "11";
+    const auto [rest, error] = std::from_chars(first.data(), first.data() + first.size(), rounds);
+    if (error != std::errc() || rest != first.data() + first.size() || rounds < 1) {
+        std::fprintf(stderr, "usage: %s\n", usage);
+        return 2;
+    }
     try {
-        return run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 11, argc > 2 ? argv[2] : "");
-    } catch (const gl::error& problem) {
+        return run(rounds, argc > 2 ? argv[2] : "", argc > 3 ? argv[3] : nullptr);
+    } catch (const std::exception& problem) {
         std::fprintf(stderr, "passes_bench: %s\n", problem.what());
         return 1;
     }
