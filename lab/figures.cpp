@@ -3,6 +3,7 @@
 #include "lab/bias_run.hpp"
 #include "lab/method_table.hpp"
 #include "lab/plot.hpp"
+#include "lab/raster_figure.hpp"
 #include "lab/report_parts.hpp"
 #include "lab/view_arguments.hpp"
 #include "lab/vpl.hpp"
@@ -84,8 +85,11 @@ figure_defaults defaults_of_figure(const std::string& name) {
         points_of_vpl(name);
         return defaults_of_vpl();
     }
+    if (is_raster_figure(name)) {
+        return defaults_of_raster_figure();
+    }
     if (name != "figure6" && name != "figure8") {
-        throw bad_input("--preset wants figure6, figure8 or vpl, not '" + name + "'");
+        throw bad_input("--preset wants figure6, figure7, figure8 or vpl, not '" + name + "'");
     }
     return {"outdoor", "0", "0", name == "figure6" ? 2048 : 1024, {512, 512}};
 }
@@ -94,6 +98,9 @@ std::size_t runs_of_figure(const std::string& name) {
     if (is_vpl(name)) {
         return runs_of_vpl();
     }
+    if (is_raster_figure(name)) {
+        return runs_of_raster_figure();
+    }
     return plan_of(name).size();
 }
 
@@ -101,6 +108,9 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
                            const ray_tracer& rays, const camera_view& camera,
                            const light_view& light, results& all, report_folder& folder,
                            progress_bar& progress) {
+    if (is_raster_figure(wanted.preset)) {
+        return run_raster_figure(wanted, world, gpu, rays, camera, light, all, folder, progress);
+    }
     const g_buffer_samples samples = gpu.samples(camera, light);
     const std::vector<std::uint8_t> truth = rays.shadows(samples, light).shadowed;
     const shader shades(world, rays, samples, camera, light);
@@ -117,6 +127,7 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
                          camera_text(camera),
                          light_text(light),
                          write("raytraced", shades.shade(truth)),
+                         {},
                          {}};
     for (const cell_plan& plan : plan_of(wanted.preset)) {
         stop_if_asked();
@@ -171,6 +182,9 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
 
 std::string figure_section(const results& all, const figure_pictures& seen) {
     const figure_record& record = all.figures[seen.figure];
+    if (is_raster_figure(record.name)) {
+        return raster_figure_section(all, seen);
+    }
     const bool blurs = record.name == "figure8";
     std::string html =
         "<style>.matrix { display: grid; gap: .6rem; margin: .4rem 0 1.2rem;\n"

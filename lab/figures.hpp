@@ -1,4 +1,5 @@
-// Figures of Scherzer 2005, redone as matrices of pictures with numbers under each.
+// Figures of the papers, redone as matrices of pictures with numbers under each: those of Scherzer
+// 2005 here, that of Rosen 2012 in raster_figure.hpp.
 #pragma once
 
 #include "lab/methods.hpp"
@@ -27,7 +28,7 @@ struct figure_defaults {
     glm::ivec2 view;
 };
 
-/// @throws bad_input for anything but figure6, figure8 and the presets of lab/vpl.hpp.
+/// @throws bad_input for anything but figure6, figure7, figure8 and the presets of lab/vpl.hpp.
 figure_defaults defaults_of_figure(const std::string& name);
 
 /// How many runs a figure takes.
@@ -40,6 +41,7 @@ struct figure_pictures {
     std::string light_text;
     png_file reference; ///< ray traced
     std::vector<png_file> cells;
+    std::vector<png_file> maps; ///< of the cells, for figures that show them
 };
 
 /// Runs all cells, adds their records to `all`, and writes their pictures.

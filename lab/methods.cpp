@@ -230,6 +230,9 @@ method_result renderer::run(std::string_view name, const view_request& request,
         result.mean_side = static_cast<double>(s.warped.mean_side());
     }
     result.status = s.guards(how, chosen, maps);
+    if (request.keep_depth) {
+        result.depth = maps.depth.read<float>();
+    }
     std::vector<glm::vec4> extents; // before the pictures, which draw with a map of everything
     if (!how.omni.hemispheres) {
         extents = s.metric.measure(

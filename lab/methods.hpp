@@ -37,7 +37,8 @@ struct view_request {
     warp_wishes tables = {};                          ///< for methods with warp tables
     const std::vector<std::uint8_t>* truth = nullptr; ///< for methods that are told it
     precision set_up = precision::in_double;          ///< of the steps on the host
-    bool details = true; ///< pictures that explain the method, and times pass by pass
+    bool details = true;     ///< pictures that explain the method, and times pass by pass
+    bool keep_depth = false; ///< of the maps, in the result
 };
 
 /// View samples, row 0 at the bottom of the picture.
@@ -92,6 +93,7 @@ struct method_result {
     std::vector<named_picture> pictures;
     std::vector<bias_sample> biases; ///< per view sample, where a bias was asked for
     std::vector<float> light;        ///< share per view sample, where a filter was asked for
+    std::vector<float> depth;        ///< of the maps, one after the other, where asked for
 };
 
 /// Adds times of frames, and brings their median and ends up to date.

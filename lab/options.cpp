@@ -51,8 +51,10 @@ Ways to draw maps with tables (--raster); the warp bends edges, rasterisers draw
 Figures (--preset), over a scene, camera and light of your choice:
   figure6   biases (Scherzer 2005, figure 6): none, constant, slope-scale and footprint, each with
             hyperbolic and linear depth and with back faces, for lispsm, fitted and sm
-  figure8   blur of the shadows in the picture (figure 8): 0 to 16 iterations, the same everywhere
-            and less with depth, for sm and lispsm
+  figure7   ways to draw warped maps (Rosen 2012, figure 7): rtw-backward and notw under every
+            --raster, the same detail of each
+  figure8   blur of the shadows in the picture (Scherzer 2005, figure 8): 0 to 16 iterations, the
+            same everywhere and less with depth, for sm and lispsm
   vpl       shadow maps of virtual lights on the surfaces (Navratil 2012, figure 13), the scene as a
             cloud of 100000 points, or with vpl:POINTS of so many; cubes against paraboloids
 
@@ -162,7 +164,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     warp_arguments tables;
     add_warp_arguments(app, tables);
     app.add_option("--preset", result.preset,
-                   "Redo a figure of a paper: figure6, figure8, vpl or vpl:POINTS");
+                   "Redo a figure of a paper: figure6, figure7, figure8, vpl or vpl:POINTS");
     app.add_option("--sweep", sweep,
                    "All methods at all sizes on all built-in scenes, what accuracy costs in time: "
                    "short or full (hours); what is given besides takes the place of its part, and "
@@ -289,6 +291,9 @@ std::optional<options> parse_options(int argc, const char* const* argv,
                             "--path");
         }
         const figure_defaults defaults = defaults_of_figure(result.preset);
+        if (result.preset == "figure7" && !rasters.empty()) {
+            throw bad_input("--preset figure7 brings its own --raster");
+        }
         const auto take = [](std::vector<std::string>& target, const auto& given,
                              const char* value) {
             if (given.empty()) {

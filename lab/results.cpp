@@ -158,6 +158,9 @@ ordered_json json_of_figure(const figure_record& figure) {
             entry["filtered_acne_ratio"] = number_or_null(cell.filtered_acne);
             entry["mean_light_error"] = number_or_null(cell.mean_light_error);
         }
+        if (cell.wrong_texels) {
+            entry["wrong_texel_ratio"] = *cell.wrong_texels;
+        }
         json["cells"].push_back(entry);
     }
     return json;

@@ -47,6 +47,8 @@ struct figure_record {
         std::size_t run;                        ///< index into results::runs
         std::optional<double> filtered_acne;    ///< acne that is left after the filter
         std::optional<double> mean_light_error; ///< of the filtered light, against the ray tracer
+        std::optional<double> wrong_texels =
+            std::nullopt; ///< share that is not as in the ideal map
     };
     std::vector<cell> cells;
 };

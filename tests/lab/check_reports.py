@@ -133,7 +133,8 @@ def check_results(results):
         times = entry["frame_ms"]
         assert 0 < times["min"] <= times["median"] <= times["max"] and times["n"] == REPEAT
         assert entry["pass_ms"] and all(t >= 0 for t in entry["pass_ms"].values())
-        assert entry["bytes"] > 0 and entry["triangles"] > 0
+        assert entry["bytes"] > 0
+        assert (entry["triangles"] > 0) == (entry.get("raster") != "ideal")
         if entry["method"] == "raytraced":
             assert entry["map"] == 0 and not wrong and not entry["grazing"]["wrong_pixel_ratio"]
         elif entry["method"] == "sv":
@@ -452,6 +453,34 @@ def check_figures():
     REPEAT = 2
 
 
+def check_raster_figure():
+    """Rosen's figure 7: what is done about bent edges, from worst to best."""
+    global REPEAT
+    REPEAT = 1
+    results = figure_report("figure7", "--preset", "figure7", "--scene", str(data / "two_quads.gltf"),
+                            "--map", "64", "--repeat", "1")
+    REPEAT = 2
+    (entry,) = results["figures"]
+    cells, runs = entry["cells"], results["runs"]
+    ways = ["none", "fragment", "rule:5", "rule:2.5", "rule:1", "bound:0.5", "exact", "ideal"]
+    methods = ["rtw-backward", "notw"]
+    assert [(c["row"], c["column"]) for c in cells] == [(m, w) for m in methods for w in ways]
+    assert [(runs[c["run"]]["method"], runs[c["run"]]["raster"]) for c in cells] == (
+        [(m, w) for m in methods for w in ways])
+    for method in methods:
+        off = {c["column"]: c["wrong_texel_ratio"] for c in cells if c["row"] == method}
+        assert off["ideal"] == 0 and off["exact"] < 0.002, off
+        assert off["exact"] < off["bound:0.5"] <= off["fragment"] < off["none"], off
+        assert off["exact"] <= off["rule:1"] <= off["rule:2.5"] <= off["rule:5"] < off["fragment"], off
+    folder = scratch / "figure7"
+    for name in [f"figure7-{entry['scene']}-c0-l0-{m}-{w}" for m in methods for w in ways]:
+        name = name.replace(":", "_")
+        assert png_size((folder / f"{name}.png").read_bytes()) == (48, 32), name
+        assert png_size((folder / f"{name}-map.png").read_bytes()) == (32, 32), name
+    html = (folder / "report.html").read_text()
+    assert html.count("<figure>") == len(cells) and html.count("a&nbsp;ray&nbsp;per&nbsp;texel") == 2
+
+
 def figure_report(folder, *arguments):
     """As report, which gives --repeat and hence may not be given it twice."""
     global SMALL
@@ -617,7 +646,7 @@ PARTS = {
     "tables": (check_tables, check_table_formats, check_bytes, check_set_up),
     "paths": (check_paths,),
     "biases": (check_biases,),
-    "figures": (check_figures,),
+    "figures": (check_figures, check_raster_figure),
     "sweep": (check_sweep,),
 }
 for check in PARTS[part]:

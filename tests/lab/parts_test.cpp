@@ -2,6 +2,7 @@
 #include "lab/measure.hpp"
 #include "lab/options.hpp"
 #include "lab/picture.hpp"
+#include "lab/raster_figure.hpp"
 #include "lab/report_folder.hpp"
 #include "lab/results.hpp"
 #include "lab/scene.hpp"
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 namespace {
 
@@ -330,6 +332,18 @@ TEST_CASE("pictures: the detail lies where methods differ most") {
     CHECK(whole.rgb[6] > 200);
     CHECK(whole.rgb[7] < 50);
     CHECK(whole.rgb[0] == 1);
+}
+
+TEST_CASE("texels that are not as in the ideal map") {
+    // depths from 0.25 to 0.75: a difference of 0.001 is allowed; 1 is empty
+    const std::array<float, 6> ideal{0.25f, 0.75f, 0.5f, 0.5f, 1.0f, 1.0f};
+    std::array<float, 6> drawn{0.2505f, 0.752f, 1.0f, std::numeric_limits<float>::quiet_NaN(),
+                               0.9999f, 1.0f};
+    CHECK(lab::wrong_texels(drawn, ideal) == std::vector<std::uint8_t>{0, 1, 1, 1, 1, 0});
+    CHECK(lab::wrong_texels(ideal, ideal) == std::vector<std::uint8_t>(6, 0));
+    const std::array<float, 2> empty{1.0f, 1.0f};
+    const std::array<float, 2> one{1.0f, 0.5f};
+    CHECK(lab::wrong_texels(one, empty) == std::vector<std::uint8_t>{0, 1});
 }
 
 TEST_CASE("report folders appear whole or not at all") {
