@@ -434,6 +434,11 @@ void program::dispatch(glm::ivec3 size) const {
                       static_cast<GLuint>(groups.z));
 }
 
+void program::dispatch_over(std::size_t count) const {
+    const std::size_t most = std::size_t{65535} * static_cast<std::size_t>(group_size_.x);
+    dispatch(static_cast<int>(std::min(count, most)));
+}
+
 GLint program::location(const char* name) const {
     const auto [entry, fresh] = locations_.try_emplace(name, -1);
     if (fresh) {

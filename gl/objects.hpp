@@ -184,6 +184,9 @@ class program {
     /// Runs a compute program over at least `size` invocations in x, y, z.
     void dispatch(glm::ivec3 size) const;
     void dispatch(int x, int y = 1, int z = 1) const { dispatch(glm::ivec3(x, y, z)); }
+    /// Runs a compute program over `count` things in a row, or over as many as OpenGL promises to
+    /// take: its invocations step on by gl_NumWorkGroups.x * gl_WorkGroupSize.x.
+    void dispatch_over(std::size_t count) const;
 
     void set(const char* name, int value) const;
     void set(const char* name, unsigned value) const;

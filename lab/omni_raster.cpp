@@ -44,9 +44,9 @@ void hemisphere_raster::cut(const map_resources& maps) {
         program->set("deviation", static_cast<float>(bend_texels / maps.size));
         program->set("overlap", static_cast<float>(std::min(overlap_in_texels / maps.size, 1.0)));
     }
-    const int triangles = static_cast<int>(gpu_.world().triangles.size());
-    set_up_.set("triangle_count", triangles);
-    set_up_.dispatch(triangles);
+    const std::size_t triangles = gpu_.world().triangles.size();
+    set_up_.set("triangle_count", static_cast<unsigned>(triangles));
+    set_up_.dispatch_over(triangles);
     gl::wait_for_writes();
     const int rounds =
         3 * (static_cast<int>(std::ceil(std::log2(std::sqrt(2.0) / shortest))) + halvings_to_crop);

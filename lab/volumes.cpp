@@ -29,12 +29,6 @@ constexpr std::array<std::uint32_t, 4> no_vertices{0, 1, 0, 0};
 /// Mirror of `volume_side` in shaders/volume_sides.glsl.
 constexpr std::size_t side_bytes = 3 * sizeof(std::uint32_t);
 
-/// Invocations over `count` things; beyond what OpenGL promises to take, each has several.
-int invocations(std::size_t count) {
-    constexpr std::size_t most = 65535 * 64;
-    return static_cast<int>(std::min(count, most));
-}
-
 bool is_sun(const light_view& light) {
     return light.light.kind == ws::light_kind::directional;
 }
@@ -87,7 +81,7 @@ void volume_passes::find_sides(bool sun) {
     gpu_.mesh().indices().bind_base(GL_SHADER_STORAGE_BUFFER, on_indices);
     d.facing.bind_base(GL_SHADER_STORAGE_BUFFER, on_facing);
     d.set_up.set("triangle_count", static_cast<unsigned>(triangles));
-    d.set_up.dispatch(invocations(triangles));
+    d.set_up.dispatch_over(triangles);
     gl::wait_for_writes();
     d.arguments.write(0, sizeof no_vertices, no_vertices.data());
     d.sides.bind_base(GL_SHADER_STORAGE_BUFFER, on_sides);
@@ -96,7 +90,7 @@ void volume_passes::find_sides(bool sun) {
     d.arguments.bind_base(GL_SHADER_STORAGE_BUFFER, on_arguments);
     d.find_sides.set("edge_count", d.edge_count);
     d.find_sides.set("vertices_per_side", sun ? 3u : 6u);
-    d.find_sides.dispatch(invocations(d.edge_count));
+    d.find_sides.dispatch_over(d.edge_count);
     gl::wait_for_writes();
 }
 

@@ -164,9 +164,9 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
         gpu_.mesh().indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
         gpu_.face_normal_buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
         sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
-        const int triangles = static_cast<int>(gpu_.world().triangles.size());
-        set_up_.set("triangle_count", triangles);
-        set_up_.dispatch(triangles);
+        const std::size_t triangles = gpu_.world().triangles.size();
+        set_up_.set("triangle_count", static_cast<unsigned>(triangles));
+        set_up_.dispatch_over(triangles);
         gl::wait_for_writes();
     });
     gpu_.timed_pass("cut triangles", [&] {

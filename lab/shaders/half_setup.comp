@@ -6,7 +6,7 @@ layout(std430, binding = 0) readonly buffer positions { float position[]; };
 layout(std430, binding = 1) readonly buffer indices { uint index[]; };
 layout(std430, binding = 2) readonly buffer face_normals { vec4 face_normal[]; };
 layout(std430, binding = 8) writeonly buffer waiting_pieces { half_piece waiting_list[]; };
-uniform int triangle_count;
+uniform uint triangle_count;
 
 vec3 corner(uint i)
 {
@@ -34,12 +34,8 @@ float nearest_of(half_piece t, vec3 normal)
     return inside ? min(abs(away), edges) : edges;
 }
 
-void main()
+void sort(uint id)
 {
-    uint id = gl_GlobalInvocationID.x;
-    if (id >= uint(triangle_count)) {
-        return;
-    }
     half_piece t;
     t.p0 = corner(3u * id);
     t.p1 = corner(3u * id + 1u);
@@ -62,5 +58,13 @@ void main()
         atomicAdd(crowded, 1u);
         atomicAdd(uncut, 1u);
         emit_ready(t);
+    }
+}
+
+void main()
+{
+    for (uint id = gl_GlobalInvocationID.x; id < triangle_count;
+         id += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+        sort(id);
     }
 }

@@ -8,7 +8,7 @@ layout(std430, binding = 1) readonly buffer indices { uint index[]; };
 layout(std430, binding = 2) readonly buffer face_normals { vec4 face_normal[]; };
 layout(std430, binding = 8) writeonly buffer waiting_triangles { waiting_piece waiting_list[]; };
 layout(std430, binding = 10) writeonly buffer source_triangles { source_triangle source[]; };
-uniform int triangle_count;
+uniform uint triangle_count;
 
 vec3 vertex(uint i)
 {
@@ -47,12 +47,8 @@ void clip(vec4 plane)
     }
 }
 
-void main()
+void sort(uint id)
 {
-    uint id = gl_GlobalInvocationID.x;
-    if (id >= uint(triangle_count)) {
-        return;
-    }
     bvec3 below[3], above[3];
     for (int i = 0; i < 3; ++i) {
         vec4 c = light_matrix * vec4(vertex(index[3u * id + uint(i)]), 1.0);
@@ -134,5 +130,13 @@ void main()
                 asks_for_cut(piece, true);
             }
         }
+    }
+}
+
+void main()
+{
+    for (uint id = gl_GlobalInvocationID.x; id < triangle_count;
+         id += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+        sort(id);
     }
 }

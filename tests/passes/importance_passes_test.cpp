@@ -2,6 +2,7 @@
 // host.
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "passes/compute_pass.hpp"
 
 #include <warpshadow/importance.hpp>
 #include <warpshadow/rectilinear.hpp>
@@ -38,11 +39,6 @@ uint ws_sample_weight(ivec2 pixel, vec2 p) { return uint(own_sample(pixel).z); }
 int ws_sample_class(ivec2 pixel, vec2 p) { return int(own_sample(pixel).w); }
 )";
 
-gl::program pass(const std::string& text) {
-    static const gl::shader_library library{gl::glsl_files()};
-    return gl::program::compute(library.compose("#version 430 core\n" + text, "pass"));
-}
-
 /// A sample as the host's splats take it.
 struct point {
     glm::vec2 p;
@@ -71,10 +67,6 @@ view make_view(glm::ivec2 size, unsigned seed) {
         }
     }
     return result;
-}
-
-std::size_t squared(int cells) {
-    return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
 }
 
 std::vector<std::uint32_t> random_counts(int cells, unsigned seed) {

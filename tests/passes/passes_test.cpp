@@ -1,6 +1,7 @@
 // The compute passes on whatever OpenGL there is, against the same steps on the host.
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "passes/compute_pass.hpp"
 
 #include <warpshadow/fit.hpp>
 #include <warpshadow/tessellation.hpp>
@@ -33,11 +34,6 @@ bool ws_view_sample(ivec2 pixel, out vec2 p)
     return s.z != 0.0;
 }
 )";
-
-gl::program pass(const std::string& text) {
-    static const gl::shader_library library{gl::glsl_files()};
-    return gl::program::compute(library.compose("#version 430 core\n" + text, "pass"));
-}
 
 struct view {
     glm::ivec2 size;

@@ -1,6 +1,7 @@
 // The passes that soften shadows, on whatever OpenGL there is, against the same steps on the host.
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "passes/compute_pass.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -11,11 +12,6 @@
 #include <vector>
 
 namespace {
-
-gl::program pass(const std::string& text) {
-    static const gl::shader_library library{gl::glsl_files()};
-    return gl::program::compute(library.compose("#version 430 core\n" + text, "pass"));
-}
 
 std::size_t index_of(glm::ivec2 size, int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +

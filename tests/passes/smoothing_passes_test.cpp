@@ -1,6 +1,7 @@
 // Windows that are no box, and the shear limit, on whatever OpenGL there is, against the host.
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
+#include "passes/compute_pass.hpp"
 
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
@@ -17,15 +18,6 @@
 namespace ws = warpshadow;
 
 namespace {
-
-gl::program pass(const std::string& text) {
-    static const gl::shader_library library{gl::glsl_files()};
-    return gl::program::compute(library.compose("#version 430 core\n" + text, "pass"));
-}
-
-std::size_t squared(int cells) {
-    return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
-}
 
 /// Counts around places that move from row to row.
 std::vector<std::uint32_t> clustered(int cells, unsigned samples, unsigned seed) {
