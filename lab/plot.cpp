@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace lab {
 namespace {
@@ -97,11 +98,20 @@ std::vector<double> round_numbers(double lo, double hi) {
     }
 }
 
+/// A text's width where it is widest: bold, in a wide font.
+double width_of(std::string_view what) {
+    const auto characters = std::count_if(what.begin(), what.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; // the first byte of each
+    });
+    return 8.6 * static_cast<double>(characters);
+}
+
 /// The text of one plot, grown element by element.
 class drawing {
   public:
     drawing(double height, const std::string& about)
-        : svg_("<svg class=\"plot\" viewBox=\"0 0 640 " + fixed(height, 0) +
+        : height_(height),
+          svg_("<div class=\"scroll\"><svg class=\"plot\" viewBox=\"0 0 640 " + fixed(height, 0) +
                "\" role=\"img\" aria-label=\"" + escaped(about) + "\">\n") {}
 
     void text(double x, double y, const std::string& what, const std::string& more) {
@@ -122,34 +132,82 @@ class drawing {
     void circle(double x, double y, const std::string& kind, const std::string& about) {
         svg_ += "<circle class=\"" + kind + "\" cx=\"" + fixed(x, 1) + "\" cy=\"" + fixed(y, 1) +
                 "\" r=\"5\"><title>" + escaped(about) + "</title></circle>\n";
+        taken_.push_back({x - 6.0, y - 6.0, x + 6.0, y + 6.0});
     }
-    /// A name to the right of a point, moved up until it hides no other, or down if there is no
-    /// room above.
-    void name(double x, double y, const std::string& what, const std::string& colour) {
-        constexpr double step = 13.5;
-        const double wanted = y;
-        while (hides_a_name(x, y)) {
-            y -= step;
+    /// The number of a grid line, unless it would touch another.
+    void tick(double x, double y, const std::string& what, const char* anchor) {
+        const double w = width_of(what);
+        const double left = anchor[0] == 'm' ? x - 0.5 * w : x - w;
+        if (take({left - 3.0, y - 11.0, left + w + 3.0, y + 2.0})) {
+            text(x, y, what, std::string("text-anchor=\"") + anchor + "\"");
         }
-        if (y < step) {
-            for (y = wanted; hides_a_name(x, y);) {
-                y += step;
+    }
+    /// A name beside what lies between `left` and `right`, at the nearest height where it hides
+    /// nothing.
+    void name(double left, double right, double y, const std::string& what,
+              const std::string& colour) {
+        constexpr double step = 7.0;
+        const double w = width_of(what) + 4.0;
+        const auto put = [&](double from, double at, double moved, bool before) {
+            if (std::abs(moved) > 2.0 * step) {
+                line(before ? left : right, y, before ? left - 7.0 : right + 7.0, at, "lead");
+            }
+            text(before ? left - 9.0 : from, at + 4.0, what,
+                 "class=\"name " + colour + (before ? "\" text-anchor=\"end\"" : "\""));
+        };
+        for (int k = 0; k < static_cast<int>(2.0 * height_ / step); ++k) {
+            const double moved = (k % 2 == 0 ? 0.5 : -0.5) * step * (k + k % 2);
+            const double at = y + moved;
+            if (at < 10.0 || at > height_ - 6.0) {
+                continue;
+            }
+            for (const bool before : {false, true}) {
+                const double from = before ? left - 9.0 - w : right + 9.0;
+                if (from >= 0.0 && from + w <= width &&
+                    take({from, at - 7.0, from + w, at + 7.0})) {
+                    put(from, at, moved, before);
+                    return;
+                }
             }
         }
-        names_.emplace_back(x, y);
-        text(x, y, what, "class=\"name " + colour + "\"");
+        put(right + 9.0, y, 0.0, false); // no room anywhere
     }
-    [[nodiscard]] std::string done() const { return svg_ + "</svg>\n"; }
+    /// A few characters at a point, if there is room on any side.
+    void mark(double x, double y, const std::string& what) {
+        const double w = width_of(what);
+        for (const auto& [dx, dy] :
+             {std::pair(0.0, -9.0), std::pair(0.0, 18.0), std::pair(0.5 * w + 9.0, 4.0),
+              std::pair(-0.5 * w - 9.0, 4.0)}) {
+            const double left = x + dx - 0.5 * w;
+            if (left >= 0.0 && left + w <= width && y + dy > 12.0 &&
+                take({left, y + dy - 12.0, left + w, y + dy + 3.0})) {
+                text(x + dx, y + dy, what, "class=\"small\" text-anchor=\"middle\"");
+                return;
+            }
+        }
+    }
+    [[nodiscard]] std::string done() const { return svg_ + "</svg></div>\n"; }
 
   private:
-    [[nodiscard]] bool hides_a_name(double x, double y) const {
-        return std::any_of(names_.begin(), names_.end(), [&](const auto& other) {
-            return std::abs(other.first - x) < 80.0 && std::abs(other.second - y) < 13.0;
+    struct box {
+        double left, top, right, bottom;
+    };
+
+    /// Makes a place the text's own, if nothing stands there.
+    bool take(const box& wanted) {
+        const bool free = std::none_of(taken_.begin(), taken_.end(), [&](const box& other) {
+            return wanted.left < other.right && other.left < wanted.right &&
+                   wanted.top < other.bottom && other.top < wanted.bottom;
         });
+        if (free) {
+            taken_.push_back(wanted);
+        }
+        return free;
     }
 
+    double height_;
     std::string svg_;
-    std::vector<std::pair<double, double>> names_; // where names stand already
+    std::vector<box> taken_; // where texts and points are
 };
 
 std::string colour_class(std::size_t colour) {
@@ -219,15 +277,15 @@ std::string scatter_plot(const std::vector<plot_series>& series, const std::stri
     drawing svg(height, y_name + " against " + x_name);
     for (const double tick : ticks_between(x.lo, x.hi)) {
         svg.line(x.at(tick), 18.0, x.at(tick), bottom, "grid");
-        svg.text(x.at(tick), bottom + 18.0, short_number(tick), "text-anchor=\"middle\"");
+        svg.tick(x.at(tick), bottom + 18.0, short_number(tick), "middle");
     }
     for (const double tick : ticks_between(y.lo, y.hi)) {
         svg.line(64.0, y.at(tick), width - 92.0, y.at(tick), "grid");
-        svg.text(58.0, y.at(tick) + 4.0, short_number(tick), "text-anchor=\"end\"");
+        svg.tick(58.0, y.at(tick) + 4.0, short_number(tick), "end");
     }
     svg.line(64.0, bottom, width - 92.0, bottom, "axis");
     svg.line(64.0, 18.0, 64.0, bottom, "axis");
-    svg.text(58.0, bottom - 4.0, "0", "text-anchor=\"end\"");
+    svg.tick(58.0, bottom - 4.0, "0", "end");
     svg.text(0.5 * (64.0 + width - 92.0), height - 10.0, x_name, "text-anchor=\"middle\"");
     svg.upwards(16.0, 0.5 * bottom + 9.0, y_name);
 
@@ -255,13 +313,17 @@ std::string scatter_plot(const std::vector<plot_series>& series, const std::stri
             }
             svg.line(x.at(p.x_lo), y_of(p.y), x.at(p.x_hi), y_of(p.y), "span " + colour);
             svg.circle(x.at(p.x), y_of(p.y), colour, p.about);
-            if (each.points.size() > 1) {
-                svg.text(x.at(p.x), y_of(p.y) - 9.0, p.mark,
-                         "class=\"small\" text-anchor=\"middle\"");
-            }
         }
+    }
+    for (const plot_series& each : series) { // when all points have their places
         const plot_point& end = each.points.back();
-        svg.name(std::max(x.at(end.x), x.at(end.x_hi)) + 9.0, y_of(end.y) + 4.0, each.name, colour);
+        svg.name(x.at(end.x) - 5.0, x.at(end.x) + 5.0, y_of(end.y), each.name,
+                 colour_class(each.colour));
+    }
+    for (const plot_series& each : series) {
+        for (std::size_t i = 0; each.points.size() > 1 && i < each.points.size(); ++i) {
+            svg.mark(x.at(each.points[i].x), y_of(each.points[i].y), each.points[i].mark);
+        }
     }
     return svg.done();
 }
@@ -288,22 +350,27 @@ std::string frame_plot(const std::vector<frame_series>& series, const std::strin
     const double bottom = height - 40.0;
     const std::vector<double> y_ticks = round_numbers(lo, hi);
     const std::vector<double> x_ticks = round_numbers(0.0, static_cast<double>(frames - 1));
-    const linear_axis x{0.0, static_cast<double>(frames - 1), 64.0, width - 92.0};
+    double names = 0.0; // room for them at the right
+    for (const frame_series& each : series) {
+        names = std::max(names, width_of(each.name));
+    }
+    const double right = width - std::clamp(names + 16.0, 92.0, 0.4 * width);
+    const linear_axis x{0.0, static_cast<double>(frames - 1), 64.0, right};
     const linear_axis y{y_ticks.front(), y_ticks.back(), bottom, 14.0};
 
     drawing svg(height, y_name + " over frames");
     for (const double tick : x_ticks) {
         if (tick <= x.hi) {
             svg.line(x.at(tick), 14.0, x.at(tick), bottom, "grid");
-            svg.text(x.at(tick), bottom + 16.0, short_number(tick), "text-anchor=\"middle\"");
+            svg.tick(x.at(tick), bottom + 16.0, short_number(tick), "middle");
         }
     }
     for (const double tick : y_ticks) {
-        svg.line(64.0, y.at(tick), width - 92.0, y.at(tick), "grid");
-        svg.text(58.0, y.at(tick) + 4.0, short_number(tick), "text-anchor=\"end\"");
+        svg.line(64.0, y.at(tick), right, y.at(tick), "grid");
+        svg.tick(58.0, y.at(tick) + 4.0, short_number(tick), "end");
     }
-    svg.line(64.0, bottom, width - 92.0, bottom, "axis");
-    svg.text(0.5 * (64.0 + width - 92.0), height - 6.0, "frame", "text-anchor=\"middle\"");
+    svg.line(64.0, bottom, right, bottom, "axis");
+    svg.text(0.5 * (64.0 + right), height - 6.0, "frame", "text-anchor=\"middle\"");
     svg.upwards(14.0, 0.5 * (14.0 + bottom), y_name);
     for (const frame_series& each : series) {
         const std::string kind = "series open " + colour_class(each.colour);
@@ -323,7 +390,7 @@ std::string frame_plot(const std::vector<frame_series>& series, const std::strin
         }
         if (!points.empty()) {
             svg.polyline(points, kind);
-            svg.name(x.to + 6.0, end + 4.0, each.name, colour_class(each.colour));
+            svg.name(0.0, x.to, end, each.name, colour_class(each.colour));
         }
     }
     return svg.done();

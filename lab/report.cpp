@@ -8,6 +8,7 @@
 #include "lab/report_views.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 
 namespace lab {
@@ -24,10 +25,17 @@ std::string bias_cells(const run_record& run) {
            cell(texels_text(run.bias_effect.displacement_texels));
 }
 
+std::string view_text(const std::string& scene, const std::string& camera,
+                      const std::string& light) {
+    return escaped(scene + ", camera " + camera + ", light " + light);
+}
+
+/// A row per run, those of a view under its name.
 std::string table(const results& all) {
+    const std::string columns = any_bias(all) ? "15" : "11";
     std::string html =
-        "<div class=\"scroll\"><table>\n<thead><tr><th>scene</th><th>camera</th><th>light</th>"
-        "<th>method</th><th class=\"n\">map</th>" +
+        "<div class=\"scroll\"><table class=\"runs\">\n<thead><tr><th>method</th>"
+        "<th class=\"n\">map</th>" +
         std::string(any_bias(all) ? "<th>bias</th><th class=\"n\">acne&nbsp;%</th>"
                                     "<th class=\"n\">leak&nbsp;%</th>"
                                     "<th class=\"n\">displacement, texels</th>"
@@ -38,15 +46,20 @@ std::string table(const results& all) {
         "<th class=\"n\">frame ms</th><th class=\"n\">min–max</th><th class=\"n\">bytes</th><th "
         "class=\"n\">triangles</th>"
         "</tr></thead>\n<tbody>\n";
+    std::string shown;
     for (const run_record& run : all.runs) {
+        const std::string view = view_text(run.scene, run.camera, run.light);
+        if (view != shown) {
+            html += "<tr><th class=\"view\" colspan=\"" + columns + "\">" + view + "</th></tr>\n";
+            shown = view;
+        }
         const comparison& c = run.against_truth;
         const method_result& r = run.result;
         std::optional<double> grazing;
         if (c.grazing_samples > 0) {
             grazing = static_cast<double>(c.grazing_wrong) / static_cast<double>(c.grazing_samples);
         }
-        html += "<tr>" + cell(run.scene, false) + cell(run.camera, false) + cell(run.light, false) +
-                "<td>" + dot_of(all, label_of(run)) + escaped(method_text(run)) + "</td>" +
+        html += "<tr><td>" + dot_of(all, label_of(run)) + escaped(method_text(run)) + "</td>" +
                 cell(run.map == 0 ? "–" : std::to_string(run.map)) +
                 (any_bias(all) ? bias_cells(run) : "") +
                 cell(percent_text(c.ratio(c.false_shadow + c.false_light))) +
@@ -57,6 +70,23 @@ std::string table(const results& all) {
                 cell(bytes_text(r.bytes)) + cell(std::to_string(r.triangles)) + "</tr>\n";
     }
     return html + "</tbody></table></div>\n";
+}
+
+/// What links call a section.
+std::string anchor(std::size_t section) {
+    return "s" + std::to_string(section);
+}
+
+/// Links to the sections, where there are several.
+std::string contents(const std::vector<std::string>& titles) {
+    if (titles.size() < 2) {
+        return {};
+    }
+    std::string html = "<nav>\n<h2>Plots and pictures</h2>\n<ul class=\"contents\">\n";
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        html += "<li><a href=\"#" + anchor(i) + "\">" + titles[i] + "</a></li>\n";
+    }
+    return html + "</ul>\n</nav>\n";
 }
 
 } // namespace
@@ -91,11 +121,20 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
     for (const std::string& line : left_out_lines(all)) {
         html += "<p>Not applicable: " + escaped(line) + ".</p>\n";
     }
+    std::vector<std::string> titles;
     for (const view_pictures& view : views) {
-        html += view_section(all, view);
+        titles.push_back(view_text(view.scene, view.camera, view.light));
     }
     for (const path_pictures& path : paths) {
-        html += path_section(all, path);
+        const path_record& record = all.paths[path.first];
+        titles.push_back(view_text(record.scene, record.camera, record.light) + ", " +
+                         escaped(record.path));
+    }
+    html += contents(titles);
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        const std::string heading = "<h2 id=\"" + anchor(i) + "\">" + titles[i] + "</h2>";
+        html += i < views.size() ? view_section(all, views[i], heading)
+                                 : path_section(all, paths[i - views.size()], heading);
     }
     for (const std::string& figure : figures) {
         html += figure;

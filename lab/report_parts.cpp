@@ -36,7 +36,8 @@ std::string png_image(const png_file& source, const std::string& what, const std
 }
 
 std::string cell(const std::string& text, bool number) {
-    return number ? "<td class=\"n\">" + escaped(text) + "</td>" : "<td>" + escaped(text) + "</td>";
+    const std::string shown = text == "-" ? "–" : escaped(text);
+    return (number ? "<td class=\"n\">" : "<td>") + shown + "</td>";
 }
 
 std::string label_of(const run_record& run) {

@@ -9,17 +9,19 @@
 
 namespace lab {
 
-std::string path_section(const results& all, const path_pictures& seen) {
+std::string path_section(const results& all, const path_pictures& seen,
+                         const std::string& heading) {
     const path_record& first = all.paths[seen.first];
-    std::string html = "<section>\n<h2>" + escaped(first.scene) + ", " + escaped(first.path) +
-                       "</h2>\n<p>" + std::to_string(first.frames.size()) + " frames from camera " +
-                       escaped(seen.camera_text) + "<br>light " + escaped(seen.light_text) +
-                       "</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>method</th>"
-                       "<th class=\"n\">map</th><th class=\"n\">wrong&nbsp;%</th>"
-                       "<th class=\"n\">flips&nbsp;%</th><th class=\"n\">largest turn&nbsp;°</th>"
-                       "<th class=\"n\">frame ms</th><th class=\"n\">shadow map ms</th>"
-                       "<th class=\"n\">maps</th></tr></thead>\n"
-                       "<tbody>\n";
+    std::string html =
+        "<section>\n" + heading + "\n<p>" + std::to_string(first.frames.size()) +
+        " frames from camera " + escaped(seen.camera_text) + "<br>light " +
+        escaped(seen.light_text) +
+        "</p>\n<div class=\"scroll\"><table class=\"runs\">\n<thead><tr><th>method</th>"
+        "<th class=\"n\">map</th><th class=\"n\">wrong&nbsp;%</th>"
+        "<th class=\"n\">flips&nbsp;%</th><th class=\"n\">largest turn&nbsp;°</th>"
+        "<th class=\"n\">frame ms</th><th class=\"n\">shadow map ms</th>"
+        "<th class=\"n\">maps</th></tr></thead>\n"
+        "<tbody>\n";
     std::vector<frame_series> wrong;
     std::vector<frame_series> flips;
     std::vector<frame_series> angles;

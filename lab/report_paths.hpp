@@ -8,6 +8,7 @@
 namespace lab {
 
 /// A section with the means of each method and its values over the frames.
-std::string path_section(const results& all, const path_pictures& seen);
+/// @param heading element that the section begins with
+std::string path_section(const results& all, const path_pictures& seen, const std::string& heading);
 
 } // namespace lab

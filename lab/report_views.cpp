@@ -92,9 +92,15 @@ std::string comparison_of(const results& all, const view_pictures& view) {
     if (chosen.empty()) {
         return "";
     }
+    const auto picture = [&](const char* side) { // chosen by the script
+        return std::string("<img alt=\"") + side + "\" width=\"" +
+               std::to_string(view.reference.width) + "\" height=\"" +
+               std::to_string(view.reference.height) + "\" loading=\"lazy\" draggable=\"false\">";
+    };
     return "<div class=\"compare\"><p><select aria-label=\"left\">" + choices +
            "</select> against <select aria-label=\"right\">" + choices +
-           "</select></p><div class=\"over\"><img alt=\"left\"><img alt=\"right\"></div>"
+           "</select></p><div class=\"over\">" + picture("left") + picture("right") +
+           "</div>"
            "<input type=\"range\" aria-label=\"border between the pictures\" min=\"0\" "
            "max=\"100\" value=\"50\"></div>\n";
 }
@@ -146,11 +152,11 @@ std::string texel_line(const method_result& result) {
 
 } // namespace
 
-std::string view_section(const results& all, const view_pictures& view) {
-    std::string html = "<section>\n<h2>" + escaped(view.scene) + "</h2>\n<p>camera " +
-                       escaped(view.camera_text) + "<br>light " + escaped(view.light_text) +
-                       "</p>\n" + plots_of(all, view) + comparison_of(all, view) +
-                       "<div class=\"cards\">\n";
+std::string view_section(const results& all, const view_pictures& view,
+                         const std::string& heading) {
+    std::string html = "<section>\n" + heading + "\n<p>camera " + escaped(view.camera_text) +
+                       "<br>light " + escaped(view.light_text) + "</p>\n" + plots_of(all, view) +
+                       comparison_of(all, view) + "<div class=\"cards\">\n";
     html += "<article><h3>ray traced</h3>\n<p>the reference</p>\n" +
             png_image(view.reference, view.scene + ", ray traced", " class=\"truth\"") +
             "<div class=\"pair\">" +

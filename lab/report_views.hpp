@@ -8,6 +8,7 @@
 namespace lab {
 
 /// A section with the plots of a view, two of its pictures over each other, and a card per run.
-std::string view_section(const results& all, const view_pictures& view);
+/// @param heading element that the section begins with
+std::string view_section(const results& all, const view_pictures& view, const std::string& heading);
 
 } // namespace lab

@@ -339,7 +339,7 @@ std::string vpl_section(const results& all, std::size_t index) {
            ", after figure 13 of Navratil 2012</h2>\n<p>" + std::to_string(record.points) +
            " points in " + std::to_string(record.groups) + " groups, maps of " +
            std::to_string(record.map) + "²; lights on surfaces shine to one side.</p>\n" +
-           frame_plot(series, "shadow maps of so many lights, ms") +
+           frame_plot(series, "shadow maps, ms") +
            "<table><tr><th></th><th>maps a light</th><th>ms, all lights</th></tr>\n" + rows +
            "</table>\n</section>\n";
 }
