@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/rasterising.md from the JSON files beside this script.
 
-usage: docs/rasterising/write_page.py [--check]
+usage: docs/rasterising/write_page.py [--check | --figure FOLDER]
 
 With --check nothing is written; the exit code tells whether the tables are what the results say.
+With --figure the results and the details of the picture are first taken from the lab's report of
+--preset figure7 in FOLDER.
 The results come from `./run.sh measure rasterising`.
 """
 
 import json
 import math
 import pathlib
+import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
@@ -25,6 +28,28 @@ def load(name):
 
 def geometric_mean(values):
     return math.exp(sum(math.log(v) for v in values) / len(values))
+
+
+def picture_of(entry, cell, kind=""):
+    """Name of the detail of a cell, or with "-map" of its map, as the lab writes it."""
+    parts = (entry["figure"], entry["scene"], f"c{entry['camera']}", f"l{entry['light']}", cell["row"],
+             cell["column"])
+    return "-".join(parts).replace(":", "_") + kind + ".png"
+
+
+def take_figure(folder):
+    """Keeps what the page shows of figure7: its numbers and the details of the picture."""
+    whole = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    kept = ("method", "raster", "map", "view", "wrong_pixel_ratio", "frame_ms", "triangles")
+    (entry,) = whole["figures"]
+    for old in FOLDER.glob("figure7-*.png"):
+        old.unlink()
+    for cell in entry["cells"]:
+        for kind in ("", "-map"):
+            shutil.copy(folder / picture_of(entry, cell, kind), FOLDER)
+    small = {"device": whole["device"], "figures": [entry],
+             "runs": [{key: run[key] for key in kept} for run in whole["runs"]]}
+    (FOLDER / "figure7.json").write_text(json.dumps(small, indent=1) + "\n", encoding="utf-8")
 
 
 def thousands(n):
@@ -50,6 +75,43 @@ def chain():
             frame = "–" if way == "ideal" else f"{time:.1f}"
             texts.append(f"{100 * run['wrong_pixel_ratio']:.2f} % / {drawn} / {frame}")
         lines.append(f"| `{way}` | " + " | ".join(texts) + " |")
+    return lines
+
+
+def figure7():
+    results = load("figure7")
+    (entry,) = results["figures"]
+    first = results["runs"][0]
+    lines = [f"{entry['scene']}, camera {entry['camera']}, light {entry['light']}, map {first['map']}², "
+             f"view {first['view'][0]} × {first['view'][1]}, on {results['device']['renderer']}."]
+    across = 4
+    for method in dict.fromkeys(cell["row"] for cell in entry["cells"]):
+        cells = [cell for cell in entry["cells"] if cell["row"] == method]
+        plain = results["runs"][cells[0]["run"]]["frame_ms"]["median"]
+        lines += ["", f"`{method}`:", ""]
+        for begin in range(0, len(cells), across):
+            part = cells[begin:begin + across]
+            names, pictures, maps, texts = [], [], [], []
+            for cell in part:
+                run = results["runs"][cell["run"]]
+                names.append(f"`{cell['column']}`")
+                for kind, shown in (("", pictures), ("-map", maps)):
+                    name = picture_of(entry, cell, kind)
+                    if not (FOLDER / name).exists():
+                        sys.exit(f"docs/rasterising/{name} is missing")
+                    shown.append(f"![{method}, {cell['column']}{kind.replace('-', ', ')}]"
+                                 f"(rasterising/{name})")
+                text = (f"{100 * run['wrong_pixel_ratio']:.2f} % pixels, "
+                        f"{100 * cell['wrong_texel_ratio']:.2f} % texels")
+                if cell["column"] != "ideal":
+                    text += (f", {thousands(run['triangles'])} triangles, "
+                             f"{run['frame_ms']['median'] / plain:.1f}")
+                texts.append(text)
+            if begin == 0:
+                lines += ["| " + " | ".join(names) + " |", "|" + " --- |" * across]
+            else:
+                lines.append("| " + " | ".join(names) + " |")
+            lines += ["| " + " | ".join(row) + " |" for row in (pictures, maps, texts)]
     return lines
 
 
@@ -108,11 +170,15 @@ def folds():
 
 
 def main():
-    check = sys.argv[1:] == ["--check"]
-    if sys.argv[1:] and not check:
+    arguments = sys.argv[1:]
+    check = arguments == ["--check"]
+    if arguments[:1] == ["--figure"] and len(arguments) == 2:
+        take_figure(pathlib.Path(arguments[1]))
+    elif arguments and not check:
         sys.exit(__doc__.strip())
     blocks = {name: "\n".join(table()) + "\n"
-              for name, table in (("chain", chain), ("views", views), ("folds", folds))}
+              for name, table in (("chain", chain), ("figure7", figure7), ("views", views),
+                                  ("folds", folds))}
     fill(PAGE, blocks, "docs/rasterising/write_page.py", check)
 
 
