@@ -102,6 +102,11 @@ class Builds:
     def calls(self, program):
         return re.search(r"(?<![\w+-])" + re.escape(program) + r"(?![\w+-])", self.commands)
 
+    def imports(self, module):
+        scripts = {Path(p) for p in re.findall(r"/[^\s\"]+\.py(?![\w])", self.commands)}
+        line = re.compile(rf"^\s*(?:from|import) {re.escape(module)}\b", re.M)
+        return any(line.search(script.read_text()) for script in scripts if script.exists())
+
     @functools.cache
     def loaded(self):
         """Libraries that a small run of warpshadow-lab opens."""
@@ -135,6 +140,13 @@ def fault(builds, package, kind, name, listed):
         found = ends_with(builds.libraries)
     elif kind == "loaded":
         found = ends_with(builds.loaded())
+    elif kind == "python":
+        if not builds.imports(name):
+            return f"no script of a test imports {name}"
+        where = f"import importlib.util as u; s = u.find_spec('{name}'); print(s.origin if s else '')"
+        path = subprocess.run(["/usr/bin/python3", "-c", where],
+                              capture_output=True, text=True, check=True).stdout.strip()
+        found = [path] if path else []
     elif kind == "runtime":
         if "-fsanitize=address" not in builds.commands:
             return "no build uses -fsanitize=address"
