@@ -126,6 +126,7 @@ void run_lab(const lab::options& wanted) {
     check_limits(wanted);
 
     lab::results all;
+    all.command = wanted.command;
     all.renderer = context.info().renderer;
     all.version = context.info().version;
     all.timing = gl::timing_name(gl::best_timing());

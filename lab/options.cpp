@@ -108,6 +108,33 @@ void check_methods(std::vector<std::string>& wanted, std::span<const std::string
     wanted = result;
 }
 
+/// One word of a POSIX shell.
+std::string single_quoted(std::string_view text) {
+    std::string result = "'";
+    for (const char each : text) {
+        result += each == '\'' ? std::string("'\\''") : std::string(1, each);
+    }
+    return result + "'";
+}
+
+/// The command line without the folder to write to, which is of no interest to a reader elsewhere.
+std::string command_of(int argc, const char* const* argv) {
+    std::string result = "warpshadow-lab";
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument == "--out") {
+            ++i;
+        } else if (!argument.starts_with("--out=")) {
+            const bool plain =
+                !argument.empty() &&
+                argument.find_first_of(" \t\n'\"$`\\&|;<>()*?#~![]{}") == argument.npos;
+            result += ' ';
+            result += plain ? std::string(argument) : single_quoted(argument);
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 raster_choice raster_of(const options& wanted) {
@@ -197,13 +224,11 @@ std::optional<options> parse_options(int argc, const char* const* argv,
         result = options_of_sweep(sweep.empty() ? "short" : sweep);
         result.out = out;
         result.list_scenes = list_scenes;
-        for (int i = 1; i < argc; ++i) {
-            result.arguments += std::string(argv[i]) + "\n";
-        }
         if (!(scenes.empty() && lights.empty())) {
             result.point_lights.clear();
         }
     }
+    result.command = command_of(argc, argv);
     result.tables = warp_wishes_of(tables);
     if (!set_up.empty()) {
         if (set_up != "float" && set_up != "double") {

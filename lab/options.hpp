@@ -56,7 +56,7 @@ struct options {
     filter_choice filter;               ///< of the shadows in pictures
     std::vector<raster_choice> rasters; ///< of maps with tables, to be compared; none: the default
     warp_wishes tables;                 ///< for methods with warp tables
-    std::string arguments;              ///< the command line as it was given
+    std::string command;                ///< that asks for this, as a shell takes it; without --out
     std::string sweep;                  ///< "short" or "full", see lab/sweep.hpp, or none
     int rounds = 1;                     ///< in which frames are timed, all methods in each
     precision set_up = precision::in_double;  ///< of matrices and fits on the host

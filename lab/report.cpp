@@ -104,7 +104,9 @@ std::string html_of(const results& all, const std::vector<view_pictures>& views,
         escaped(all.renderer) + ", OpenGL " + escaped(all.version) + "; " +
         std::to_string(all.view.x) + " × " + std::to_string(all.view.y) + " pixels; times by " +
         (all.timing == "glfinish" ? "the clock between two glFinish" : "timer queries") +
-        ".</p>\n<p>A pixel is wrong when the method's shadow test differs from a ray towards the "
+        ".</p>\n<p><code class=\"command\">" + escaped(all.command) +
+        "</code></p>\n<p>A pixel is wrong when the method's shadow test differs from a ray towards "
+        "the "
         "light. Counted are pixels that face the light (n·l &gt; 0.1); those at grazing light "
         "(0 &lt; n·l ≤ 0.1) have a column of their own. Wrong pixels are red in the "
         "pictures.</p>\n" +

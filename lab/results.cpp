@@ -208,6 +208,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size
 std::string json_of(const results& all) {
     ordered_json json;
     json["schema"] = 1;
+    json["command"] = all.command;
     json["device"]["renderer"] = all.renderer;
     json["device"]["version"] = all.version;
     json["timing"] = all.timing;

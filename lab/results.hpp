@@ -78,6 +78,7 @@ struct not_applicable {
 
 /// Everything that a report is made of.
 struct results {
+    std::string command; ///< that makes them again
     std::string renderer;
     std::string version;
     std::string timing; ///< "timer_query" or "glfinish"

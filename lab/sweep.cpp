@@ -52,7 +52,7 @@ std::vector<run_variant> variants_at(int map) {
 /// What decides the records of a view; times aside, equal texts mean equal records.
 std::string settings_of(const options& wanted, const camera_view& camera, const light_view& light,
                         const results& all) {
-    std::string text = wanted.arguments + "|" + all.renderer + "|" + all.version + "|" +
+    std::string text = wanted.command + "|" + all.renderer + "|" + all.version + "|" +
                        wanted.sweep + "|" + std::to_string(wanted.view.x) + "x" +
                        std::to_string(wanted.view.y) + "|" + std::to_string(wanted.repeat) + "|" +
                        std::to_string(wanted.rounds) + "|" + std::to_string(wanted.seed) + "|" +

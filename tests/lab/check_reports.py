@@ -56,6 +56,10 @@ def report(folder, *arguments):
     check_files(scratch / folder)
     results = json.loads((scratch / folder / "results.json").read_text())
     check_results(results)
+    command = " ".join(["warpshadow-lab", *SMALL, *arguments])
+    assert results["command"].replace("'", "") == command, results["command"]
+    assert f"<code class=\"command\">{results['command']}</code>" in (
+        scratch / folder / "report.html").read_text().replace("&#39;", "'")
     for entry in results["runs"]:
         assert re.search(rf"^{entry['scene']} .* {entry['method']} ", done.stdout, re.M), done.stdout
     assert not list(scratch.glob(".*")), "a temporary folder is left"
@@ -98,7 +102,7 @@ def png_size(content):
 
 def check_results(results):
     assert [key for key in results if key != "figures"] == [
-        "schema", "device", "timing", "runs", "paths", "not_applicable"]
+        "schema", "command", "device", "timing", "runs", "paths", "not_applicable"]
     assert results["schema"] == 1
     assert results["device"]["renderer"] and results["device"]["version"]
     assert results["timing"] in ("timer_query", "glfinish")
