@@ -2,6 +2,7 @@
 
 #include "lab/accuracy.hpp"
 #include "lab/plot.hpp"
+#include "lab/report_parts.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -46,11 +47,7 @@ std::string head(std::initializer_list<const char*> names, std::size_t texts) {
 }
 
 std::string text_cell(const std::string& text) {
-    return "<td>" + escaped(text) + "</td>";
-}
-
-std::string number_cell(const std::string& text) {
-    return "<td class=\"n\">" + escaped(text) + "</td>";
+    return cell(text, false);
 }
 
 std::string times(double ratio) {
@@ -109,10 +106,9 @@ std::string score_table(const results& all) {
                             2);
     for (const method_score& each : scores) {
         html += "<tr>" + text_cell(plural(each.kind)) + text_cell(each.method) +
-                number_cell(std::to_string(each.map)) + number_cell(std::to_string(each.views)) +
-                number_cell(times(each.wrong)) + number_cell(times(each.time)) +
-                number_cell(times(each.bytes)) + number_cell(std::to_string(each.better)) +
-                number_cell(std::to_string(each.worse)) + "</tr>\n";
+                cell(std::to_string(each.map)) + cell(std::to_string(each.views)) +
+                cell(times(each.wrong)) + cell(times(each.time)) + cell(times(each.bytes)) +
+                cell(std::to_string(each.better)) + cell(std::to_string(each.worse)) + "</tr>\n";
     }
     return html + "</tbody></table></div>\n";
 }
@@ -132,10 +128,9 @@ std::string variant_table(const results& all) {
              2);
     for (const variant_score& each : scores) {
         html += "<tr>" + text_cell(each.method) + text_cell(each.variant) +
-                number_cell(std::to_string(each.views)) + number_cell(times(each.wrong)) +
-                number_cell(each.light_error ? times(*each.light_error) : "") +
-                number_cell(times(each.time)) + number_cell(times(each.bytes)) +
-                number_cell(times(each.set_up)) + "</tr>\n";
+                cell(std::to_string(each.views)) + cell(times(each.wrong)) +
+                cell(each.light_error ? times(*each.light_error) : "") + cell(times(each.time)) +
+                cell(times(each.bytes)) + cell(times(each.set_up)) + "</tr>\n";
     }
     return html + "</tbody></table></div>\n";
 }
@@ -156,13 +151,12 @@ std::string quality_table(const results& all) {
                 std::to_string(target.map) + "²: " + percent_text(wrong_of(target)) +
                 "&nbsp;%</td>" + text_cell(each.method);
         if (!each.run) {
-            html += number_cell("none") + number_cell("") + number_cell("") + number_cell("");
+            html += cell("none") + cell("") + cell("") + cell("");
         } else {
             const run_record& run = all.runs[*each.run];
-            html += number_cell(std::to_string(run.map)) +
-                    number_cell(percent_text(wrong_of(run))) +
-                    number_cell(times(cost_of(run, cost::time) / cost_of(target, cost::time))) +
-                    number_cell(times(cost_of(run, cost::bytes) / cost_of(target, cost::bytes)));
+            html += cell(std::to_string(run.map)) + cell(percent_text(wrong_of(run))) +
+                    cell(times(cost_of(run, cost::time) / cost_of(target, cost::time))) +
+                    cell(times(cost_of(run, cost::bytes) / cost_of(target, cost::bytes)));
         }
         html += "</tr>\n";
     }
@@ -181,13 +175,12 @@ std::string time_table(const results& all) {
                 std::to_string(target.map) + "²: " + ms_text(cost_of(target, cost::time)) +
                 "&nbsp;ms</td>" + text_cell(each.method);
         if (!each.run) {
-            html += number_cell("none") + number_cell("") + number_cell("") + number_cell("");
+            html += cell("none") + cell("") + cell("") + cell("");
         } else {
             const run_record& run = all.runs[*each.run];
-            html += number_cell(std::to_string(run.map)) +
-                    number_cell(percent_text(wrong_of(run))) +
-                    number_cell(times(wrong_ratio(run, target))) +
-                    number_cell(times(cost_of(run, cost::time) / cost_of(target, cost::time)));
+            html += cell(std::to_string(run.map)) + cell(percent_text(wrong_of(run))) +
+                    cell(times(wrong_ratio(run, target))) +
+                    cell(times(cost_of(run, cost::time) / cost_of(target, cost::time)));
         }
         html += "</tr>\n";
     }
