@@ -111,8 +111,8 @@ double median(std::vector<double> values) {
     return values.empty() ? 0.0 : values[values.size() / 2];
 }
 
-struct bench {
-    bench() {
+struct large_scene {
+    large_scene() {
         const glm::dvec3 eye(-60.0, static_cast<double>(passes_scene::height(-60.0f, 5.0f)) + 3.0,
                              5.0);
         const ws::view_volume<double> volume = ws::perspective_volume(1.0, 1.0, 0.05, 400.0);
@@ -336,7 +336,7 @@ nlohmann::ordered_json json_of(const std::vector<pipeline>& all,
 
 int run(int rounds, const std::string& part, const char* file) {
     const gl::headless_context context;
-    bench b;
+    large_scene b;
     b.draw_view();
     b.position.bind(0);
     b.normal.bind(1);

@@ -124,7 +124,8 @@ light_maps method_frames::frame(const method& how, const view_request& request,
         }
     }
     const bool filters = request.filter.kind != shadow_filter::none && !how.omni.hemispheres;
-    if (!filters || count) { // a filter takes the place of the test, whose answers stay
+    // a filter takes the place of the test, whose answers stay, unless the next frame asks for them
+    if (!filters || count || how.tables.shadows == known_shadows::last_frame) {
         gpu.timed_pass("shadow test", [&] {
             if (request.bias) {
                 biased.test(maps, chosen, how.warp, *request.bias);

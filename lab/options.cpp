@@ -216,8 +216,15 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     }
 
     if (app.count("--sweep") > 0) {
-        if (!(result.preset.empty() && result.path.empty() && biases.empty() && filter.empty())) {
-            throw bad_input("--sweep knows no --preset, --path, --bias and --filter");
+        // it varies these itself, one at a time
+        const auto given = app.get_options([](CLI::Option* option) {
+            return option->count() > 0 && option->get_group() == table_group;
+        });
+        if (!(result.preset.empty() && result.path.empty() && biases.empty() && filter.empty() &&
+              rasters.empty() && set_up.empty() && given.empty())) {
+            throw bad_input(
+                "--sweep knows no --preset, --path, --bias, --filter, --raster, --setup "
+                "and no options of warp tables");
         }
         const std::string out = result.out;
         const bool list_scenes = result.list_scenes;

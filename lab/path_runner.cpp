@@ -30,7 +30,7 @@ path_pictures run_path(const options& wanted, const scene& world, renderer& gpu,
     for (const int map : wanted.maps) {
         for (const std::string& method : wanted.methods) {
             // the ray tracer is what the others are compared with
-            if (method == "raytraced" || why_not(method, light) ||
+            if (method == "raytraced" || why_not(method, light) || why_not(method, wanted.set_up) ||
                 (!has_maps(method) && map != wanted.maps.front())) {
                 continue;
             }

@@ -226,7 +226,6 @@ png_file png_of(const picture& source) {
         const auto* first = static_cast<const std::uint8_t*>(data);
         out->insert(out->end(), first, first + size);
     };
-    stbi_write_png_compression_level = 6; // 9 takes ten times as long and gains little
     if (stbi_write_png_to_func(append, &file.bytes, source.width, source.height, 3,
                                source.rgb.data(), source.width * 3) == 0) {
         throw std::runtime_error("cannot encode a PNG picture");

@@ -55,6 +55,9 @@ std::vector<seen_cell> run_ways(const std::string& method, const view_request& r
                        {}};
         run.kind = kind_text(light.light.kind);
         run.raster = raster_name(each.raster);
+        if (each.tables.format == table_format::unorm16) {
+            run.tables = "unorm16";
+        }
         run_method(run, gpu, each, samples, truth);
         cells.push_back({all.runs.size(),
                          way,

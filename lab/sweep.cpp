@@ -33,7 +33,8 @@ std::vector<run_variant> variants_at(int map) {
     raster("bound:0.25");
     tables("tables 32", [](warp_wishes& wish) { wish.tables = 32; });
     tables("tables 512", [](warp_wishes& wish) { wish.tables = 512; });
-    tables("window 0.25", [](warp_wishes& wish) { wish.window = 0.25f; });
+    tables("window 0.25", [](warp_wishes& wish) { wish.window = 0.25f; }); // the default: the noise
+    tables("window 0.7", [](warp_wishes& wish) { wish.window = 0.7f; });
     tables("window 2", [](warp_wishes& wish) { wish.window = 2.0f; });
     tables("floor 0.05", [](warp_wishes& wish) { wish.floor = 0.05f; });
     tables("every 16th sample", [](warp_wishes& wish) { wish.every = 4; });

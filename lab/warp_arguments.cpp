@@ -96,20 +96,19 @@ void take_importance(const std::vector<std::string>& given, warp_wishes& wishes)
 
 void add_warp_arguments(CLI::App& app, warp_arguments& given) {
     const auto add = [&](const char* name, auto& to, const char* about) {
-        app.add_option(name, to, about)->group("Methods with warp tables");
+        app.add_option(name, to, about)->group(table_group);
     };
     app.add_option("--importance", given.importance,
                    "Importance functions, comma-separated: desired-view (always), distance, edges "
                    "(rtw-forward and rtw-hybrid), normal; product or sum of them (each method's "
                    "own, see below)")
         ->allow_extra_args(false)
-        ->group("Methods with warp tables");
+        ->group(table_group);
     add("--tables", given.tables,
         "Most cells of a table along a side, no more than the map has texels (128)");
     add("--tables-format", given.format,
         "How tables are stored: r32f, or unorm16 in half the memory (r32f)");
-    add("--window", given.window,
-        "Smoothing across functions, as a share of their number, 0 to 2 (0.7)");
+    add("--window", given.window, "Smoothing across functions, as a share of their number, 0 to 2");
     add("--smooth", given.smooth,
         "Weights of that window: box, tent (a box twice) or gaussian (three times), the latter two "
         "and three times as wide (box)");
@@ -122,7 +121,7 @@ void add_warp_arguments(CLI::App& app, warp_arguments& given) {
            "--align", given.align,
            "Turn the map of a sun or a spot to the principal axis of its importance (not after "
            "another warp)")
-        ->group("Methods with warp tables");
+        ->group(table_group);
     add("--power", given.power,
         "Power of the importance of a row's window, or of a line, above 0 to 2");
     add("--subset", given.subset,

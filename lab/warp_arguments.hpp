@@ -12,6 +12,9 @@ class App;
 
 namespace lab {
 
+/// Heading of their options in --help.
+inline constexpr const char* table_group = "Methods with warp tables";
+
 /// What was given, not yet understood.
 struct warp_arguments {
     std::vector<std::string> importance;

@@ -18,7 +18,6 @@ from page_blocks import fill  # noqa: E402
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "accuracy.md"
 README = FOLDER.parents[1] / "README.md"
-UNMEASURED = "The committed sweep has no such rows yet.\n"
 KINDS = {"sun": "suns", "spot": "spot lights", "point": "point lights"}
 
 
@@ -145,8 +144,7 @@ def equal_quality(sweep):
 
 
 def equal_time(sweep):
-    rows = sweep["accuracy"].get("equal_time")
-    return matched(sweep, rows, "no longer than", "wrong") if rows else UNMEASURED
+    return matched(sweep, sweep["accuracy"]["equal_time"], "no longer than", "wrong")
 
 
 def doubling(sweep):
@@ -164,9 +162,7 @@ def doubling(sweep):
 
 def temporal(sweep):
     """What flips while the camera turns, in every thousand pixels."""
-    paths = sweep.get("paths")
-    if not paths:
-        return UNMEASURED
+    paths = sweep["paths"]
     methods = list(dict.fromkeys(p["method"] for p in paths))
     lines = [row(["view", *(f"`{m}`" for m in methods)]), row(["---"] + ["--:"] * len(methods))]
     for scene, light in dict.fromkeys((p["scene"], p["light"]) for p in paths):
@@ -180,32 +176,13 @@ def temporal(sweep):
 
 def variants(sweep):
     """What is varied one by one, against the same method without."""
-    scores = sweep["accuracy"].get("variants")
-    if scores is None:
-        return old_variants(sweep)
+    scores = sweep["accuracy"]["variants"]
     lines = [row(["method", "with", "views", "wrong", "light error", "frame time", "bytes", "set-up"]),
              row(["---", "---"] + ["--:"] * 6)]
     for s in scores:
         lines.append(row([f"`{s['method']}`", s["variant"], str(s["views"]), times(s["wrong"]),
                           "" if s["light_error"] is None else times(s["light_error"]),
                           *(times(s[k]) for k in ("frame_time", "bytes", "cpu_setup"))]))
-    return "\n".join(lines) + "\n"
-
-
-def old_variants(sweep):
-    """The same from a file without scores of variants."""
-    usual = {(r["scene"], r["camera"], r["light"], r["method"], r["map"]): r for r in sweep["runs"]
-             if "variant" not in r}
-    ratios = {}
-    for run in sweep["runs"]:
-        base = usual.get((run["scene"], run["camera"], run["light"], run["method"], run["map"]))
-        if "variant" in run and base and base["wrong_pixel_ratio"] and run["wrong_pixel_ratio"]:
-            wrong, time = ratios.setdefault(run["variant"], ([], []))
-            wrong.append(run["wrong_pixel_ratio"] / base["wrong_pixel_ratio"])
-            time.append(run["frame_ms"] / base["frame_ms"])
-    lines = [row(["`notw` with", "views", "wrong", "frame time"]), row(["---", "--:", "--:", "--:"])]
-    for name, (wrong, time) in ratios.items():
-        lines.append(row([name, str(len(wrong)), times(mean(wrong)), times(mean(time))]))
     return "\n".join(lines) + "\n"
 
 

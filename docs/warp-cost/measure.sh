@@ -7,10 +7,10 @@ for name in passes_bench warp_build_bench warp_build_bench_native; do
     release "bench_$name"
 done
 bench=$root/build/release/bench
-"$bench/passes_bench" 11 tables "$out/passes.json"
+"$bench/passes_bench" 5 tables "$out/passes.json"
 for name in warp_build_bench warp_build_bench_native; do
     printf 'timing %s ...\n' "$name"
-    "$bench/$name" --benchmark_enable_random_interleaving=true --benchmark_repetitions=7 \
+    "$bench/$name" --benchmark_enable_random_interleaving=true --benchmark_repetitions=3 \
         --benchmark_min_time=0.02 --benchmark_format=json >"$out/$name.json"
 done
 python3 "$folder/write_page.py" --gather "$out"

@@ -2,7 +2,7 @@
 
 usage: check_in_browser.py CHROMIUM CHROMEDRIVER FOLDER...
 
-Every folder holds a report.html. Exit code 77 where CHROMIUM is no program.
+Every folder holds a report.html. Exit code 77 where CHROMIUM or CHROMEDRIVER is no program.
 """
 
 import json
@@ -15,8 +15,8 @@ from pathlib import Path
 if len(sys.argv) < 4:
     sys.exit(__doc__)
 BROWSER, DRIVER, *FOLDERS = sys.argv[1:]
-if not shutil.which(BROWSER):
-    print("skipped: there is no Chromium to open the reports in")
+if not (shutil.which(BROWSER) and shutil.which(DRIVER)):
+    print("skipped: there is no Chromium with its driver to open the reports in")
     sys.exit(77)
 
 from selenium import webdriver
