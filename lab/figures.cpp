@@ -187,13 +187,8 @@ std::string figure_section(const results& all, const figure_pictures& seen) {
     }
     const bool blurs = record.name == "figure8";
     std::string html =
-        "<style>.matrix { display: grid; gap: .6rem; margin: .4rem 0 1.2rem;\n"
-        "  grid-template-columns: repeat(auto-fill, minmax(min(100%, " +
-        std::string(blurs ? "180" : "270") +
-        "px), 1fr)); }\n"
-        ".reference { max-width: 512px; margin: .6rem 0 1.2rem; }</style>\n"
-        "<section class=\"figure\">\n<h2>" +
-        escaped(record.scene) + ", after figure " + (blurs ? "8" : "6") +
+        "<section class=\"figure\" style=\"--cell: " + std::string(blurs ? "180" : "270") +
+        "px\">\n<h2>" + escaped(record.scene) + ", after figure " + (blurs ? "8" : "6") +
         " of Scherzer 2005</h2>\n<p>camera " + escaped(seen.camera_text) + "<br>light " +
         escaped(seen.light_text) +
         "</p>\n<p>Acne: lit pixels that are dark although their texel holds nothing before the "

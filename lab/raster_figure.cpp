@@ -184,12 +184,9 @@ figure_pictures run_raster_figure(const options& wanted, const scene& world, ren
 std::string raster_figure_section(const results& all, const figure_pictures& seen) {
     const figure_record& record = all.figures[seen.figure];
     std::string html =
-        "<style>.matrix { display: grid; gap: .6rem; margin: .4rem 0 1.2rem;\n"
-        "  grid-template-columns: repeat(auto-fill, minmax(min(100%, 256px), 1fr)); }\n"
-        ".reference { max-width: 512px; margin: .6rem 0 1.2rem; }</style>\n"
-        "<section class=\"figure\">\n<h2>" +
-        escaped(record.scene) + ", after figure 7 of Rosen 2012</h2>\n<p>camera " +
-        escaped(seen.camera_text) + "<br>light " + escaped(seen.light_text) +
+        "<section class=\"figure\" style=\"--cell: 256px\">\n<h2>" + escaped(record.scene) +
+        ", after figure 7 of Rosen 2012</h2>\n<p>camera " + escaped(seen.camera_text) +
+        "<br>light " + escaped(seen.light_text) +
         "</p>\n<p>The same part of the picture and of the map, drawn in every way of --raster, "
         "where those that cut edges or draw hulls differ most. Red: pixels whose shadow is wrong, "
         "and texels whose depth is not that of the ideal map. Shares are of the whole picture and "

@@ -38,6 +38,9 @@ article { background: var(--card); border: 1px solid var(--rule); border-radius:
 img { width: 100%; height: auto; display: block; border-radius: 3px; margin-top: .4rem; }
 .pixel { image-rendering: pixelated; }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: .4rem; }
+.matrix { display: grid; gap: .6rem; margin: .4rem 0 1.2rem;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, var(--cell)), 1fr)); }
+.reference { max-width: 512px; margin: .6rem 0 1.2rem; }
 figure { margin: 0; } figcaption { font-size: .8rem; } summary { cursor: pointer; margin-top: .5rem; }
 .plot { display: block; width: 100%; min-width: 564px; max-width: 640px; height: auto;
   font-size: 13px; }

@@ -85,7 +85,7 @@ def check_files(folder):
     assert "http:" not in html and "https:" not in html, "the page must need nothing but itself"
     results = json.loads((folder / "results.json").read_text())
     if "figures" in results:
-        assert html.count('<section class="figure">') == html.count("</section>") > 0
+        assert html.count('<section class="figure"') == html.count("</section>") > 0
         assert html.count("<svg") == 0
         return
     plots_of_a_section = 1 if results["runs"] else 6
