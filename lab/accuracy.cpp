@@ -88,6 +88,22 @@ std::vector<matched_run> match(std::span<const run_record> runs,
     return result;
 }
 
+/// What all kinds of scores have a mean of.
+struct mean_ratios {
+    geometric_mean wrong, time, bytes;
+
+    void add_costs(const run_record& run, const run_record& to) {
+        time.add(cost_of(run, cost::time) / cost_of(to, cost::time));
+        bytes.add(cost_of(run, cost::bytes) / cost_of(to, cost::bytes));
+    }
+    template <typename Score> void write_to(Score& score) const {
+        score.views = wrong.count;
+        score.wrong = wrong.value();
+        score.time = time.value();
+        score.bytes = bytes.value();
+    }
+};
+
 } // namespace
 
 double cost_of(const run_record& run, cost of) {
@@ -131,8 +147,7 @@ std::vector<std::vector<std::size_t>> views_of(std::span<const run_record> runs)
 }
 
 std::vector<method_score> score_methods(std::span<const run_record> runs) {
-    struct sums {
-        geometric_mean wrong, time, bytes;
+    struct sums : mean_ratios {
         std::size_t better = 0;
         std::size_t worse = 0;
     };
@@ -157,8 +172,7 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
             }
             sums& sum = found->second;
             sum.wrong.add(wrong_ratio(run, other));
-            sum.time.add(cost_of(run, cost::time) / cost_of(other, cost::time));
-            sum.bytes.add(cost_of(run, cost::bytes) / cost_of(other, cost::bytes));
+            sum.add_costs(run, other);
             sum.better += *wrong_of(run) < *wrong_of(other) ? 1u : 0u;
             sum.worse += *wrong_of(run) > *wrong_of(other) ? 1u : 0u;
         }
@@ -166,10 +180,7 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
     std::vector<method_score> result;
     for (const auto& [score, sum] : scores) {
         result.push_back(score);
-        result.back().views = sum.wrong.count;
-        result.back().wrong = sum.wrong.value();
-        result.back().time = sum.time.value();
-        result.back().bytes = sum.bytes.value();
+        sum.write_to(result.back());
         result.back().better = sum.better;
         result.back().worse = sum.worse;
     }
@@ -177,8 +188,8 @@ std::vector<method_score> score_methods(std::span<const run_record> runs) {
 }
 
 std::vector<variant_score> score_variants(std::span<const run_record> runs) {
-    struct sums {
-        geometric_mean wrong, time, bytes, set_up, light_error;
+    struct sums : mean_ratios {
+        geometric_mean set_up, light_error;
     };
     std::vector<std::pair<variant_score, sums>> scores;
     for (const std::vector<std::size_t>& view : views_of(runs)) {
@@ -204,8 +215,7 @@ std::vector<variant_score> score_variants(std::span<const run_record> runs) {
             if (run.filtered.mean_light) {
                 sum.light_error.add(std::max(*run.filtered.mean_light, none) / *ratio_of(usual));
             }
-            sum.time.add(cost_of(run, cost::time) / cost_of(usual, cost::time));
-            sum.bytes.add(cost_of(run, cost::bytes) / cost_of(usual, cost::bytes));
+            sum.add_costs(run, usual);
             if (set_up_us(run) > 0.0 && set_up_us(usual) > 0.0) {
                 sum.set_up.add(set_up_us(run) / set_up_us(usual));
             }
@@ -214,10 +224,7 @@ std::vector<variant_score> score_variants(std::span<const run_record> runs) {
     std::vector<variant_score> result;
     for (const auto& [score, sum] : scores) {
         result.push_back(score);
-        result.back().views = sum.wrong.count;
-        result.back().wrong = sum.wrong.value();
-        result.back().time = sum.time.value();
-        result.back().bytes = sum.bytes.value();
+        sum.write_to(result.back());
         result.back().set_up = sum.set_up.value();
         if (sum.light_error.count > 0) {
             result.back().light_error = sum.light_error.value();

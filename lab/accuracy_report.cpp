@@ -135,56 +135,64 @@ std::string variant_table(const results& all) {
     return html + "</tbody></table></div>\n";
 }
 
-std::string view_cell(const run_record& run) {
-    return text_cell(run.scene + ", " + run.camera + ", " + run.light);
+/// Rows of one method matched by others: the target with what it is matched in, then each match.
+/// @param what text of the target's cell, after its name
+/// @param ratios two cells of a match: text of run and target
+template <typename What, typename Ratios>
+std::string matched_rows(const results& all, const std::vector<matched_run>& matches, What what,
+                         Ratios ratios) {
+    std::string html;
+    for (const matched_run& each : matches) {
+        const run_record& target = all.runs[each.target];
+        html += "<tr>" + text_cell(target.scene + ", " + target.camera + ", " + target.light) +
+                "<td>" + escaped(target.method) + " " + std::to_string(target.map) +
+                "²: " + what(target) + "</td>" + text_cell(each.method);
+        if (!each.run) {
+            html += cell("none") + cell("") + cell("") + cell("");
+        } else {
+            const run_record& run = all.runs[*each.run];
+            html += cell(std::to_string(run.map)) + cell(percent_text(wrong_of(run)));
+            for (const double ratio : ratios(run, target)) {
+                html += cell(times(ratio));
+            }
+        }
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+double cost_ratio(const run_record& run, const run_record& to, cost of) {
+    return cost_of(run, of) / cost_of(to, of);
 }
 
 std::string quality_table(const results& all) {
-    std::string html =
-        "<h2>What it takes to be as good</h2>\n<p>For each view, the cheapest measured size at "
-        "which a method has no more wrong pixels than the first, and what its frame and its "
-        "memory cost, to those of the first.</p>\n" +
-        head({"view", "as good as", "method", "map", "wrong&nbsp;%", "frame time", "bytes"}, 3);
-    for (const matched_run& each : match_quality(all.runs, quality_targets(), all.matched)) {
-        const run_record& target = all.runs[each.target];
-        html += "<tr>" + view_cell(target) + "<td>" + escaped(target.method) + " " +
-                std::to_string(target.map) + "²: " + percent_text(wrong_of(target)) +
-                "&nbsp;%</td>" + text_cell(each.method);
-        if (!each.run) {
-            html += cell("none") + cell("") + cell("") + cell("");
-        } else {
-            const run_record& run = all.runs[*each.run];
-            html += cell(std::to_string(run.map)) + cell(percent_text(wrong_of(run))) +
-                    cell(times(cost_of(run, cost::time) / cost_of(target, cost::time))) +
-                    cell(times(cost_of(run, cost::bytes) / cost_of(target, cost::bytes)));
-        }
-        html += "</tr>\n";
-    }
-    return html + "</tbody></table></div>\n";
+    return "<h2>What it takes to be as good</h2>\n<p>For each view, the cheapest measured size at "
+           "which a method has no more wrong pixels than the first, and what its frame and its "
+           "memory cost, to those of the first.</p>\n" +
+           head({"view", "as good as", "method", "map", "wrong&nbsp;%", "frame time", "bytes"}, 3) +
+           matched_rows(
+               all, match_quality(all.runs, quality_targets(), all.matched),
+               [](const run_record& target) { return percent_text(wrong_of(target)) + "&nbsp;%"; },
+               [](const run_record& run, const run_record& target) {
+                   return std::array{cost_ratio(run, target, cost::time),
+                                     cost_ratio(run, target, cost::bytes)};
+               });
 }
 
 std::string time_table(const results& all) {
-    std::string html =
-        "<h2>What the same time buys</h2>\n<p>For each view, the measured size with the fewest "
-        "wrong pixels among those at which the frame of a method takes no longer than that of the "
-        "first; wrong pixels and frame time to those of the first.</p>\n" +
-        head({"view", "no longer than", "method", "map", "wrong&nbsp;%", "wrong", "frame time"}, 3);
-    for (const matched_run& each : match_time(all.runs, time_targets(), all.matched)) {
-        const run_record& target = all.runs[each.target];
-        html += "<tr>" + view_cell(target) + "<td>" + escaped(target.method) + " " +
-                std::to_string(target.map) + "²: " + ms_text(cost_of(target, cost::time)) +
-                "&nbsp;ms</td>" + text_cell(each.method);
-        if (!each.run) {
-            html += cell("none") + cell("") + cell("") + cell("");
-        } else {
-            const run_record& run = all.runs[*each.run];
-            html += cell(std::to_string(run.map)) + cell(percent_text(wrong_of(run))) +
-                    cell(times(wrong_ratio(run, target))) +
-                    cell(times(cost_of(run, cost::time) / cost_of(target, cost::time)));
-        }
-        html += "</tr>\n";
-    }
-    return html + "</tbody></table></div>\n";
+    return "<h2>What the same time buys</h2>\n<p>For each view, the measured size with the fewest "
+           "wrong pixels among those at which the frame of a method takes no longer than that of "
+           "the first; wrong pixels and frame time to those of the first.</p>\n" +
+           head({"view", "no longer than", "method", "map", "wrong&nbsp;%", "wrong", "frame time"},
+                3) +
+           matched_rows(
+               all, match_time(all.runs, time_targets(), all.matched),
+               [](const run_record& target) {
+                   return ms_text(cost_of(target, cost::time)) + "&nbsp;ms";
+               },
+               [](const run_record& run, const run_record& target) {
+                   return std::array{wrong_ratio(run, target), cost_ratio(run, target, cost::time)};
+               });
 }
 
 /// What is matched, by what, and at which size.
@@ -257,8 +265,8 @@ ordered_json accuracy_json(const results& all) {
         if (each.run) {
             const run_record& target = all.runs[each.target];
             const run_record& run = all.runs[*each.run];
-            entry["frame_time"] = cost_of(run, cost::time) / cost_of(target, cost::time);
-            entry["bytes"] = cost_of(run, cost::bytes) / cost_of(target, cost::bytes);
+            entry["frame_time"] = cost_ratio(run, target, cost::time);
+            entry["bytes"] = cost_ratio(run, target, cost::bytes);
         }
         json["equal_quality"].push_back(entry);
     }
@@ -271,7 +279,7 @@ ordered_json accuracy_json(const results& all) {
             const run_record& target = all.runs[each.target];
             const run_record& run = all.runs[*each.run];
             entry["wrong"] = wrong_ratio(run, target);
-            entry["frame_time"] = cost_of(run, cost::time) / cost_of(target, cost::time);
+            entry["frame_time"] = cost_ratio(run, target, cost::time);
         }
         json["equal_time"].push_back(entry);
     }

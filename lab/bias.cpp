@@ -1,10 +1,10 @@
 #include "lab/bias.hpp"
 
 #include "lab/measure.hpp"
+#include "lab/numbers.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -33,30 +33,8 @@ constexpr std::array filter_kinds{
     filter_kind{"pcf-footprint", shadow_filter::pcf_footprint, 1e6},
 };
 
-std::vector<std::string_view> parts_of(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    for (std::size_t end = text.find(separator); end != std::string_view::npos;
-         end = text.find(separator)) {
-        parts.push_back(text.substr(0, end));
-        text.remove_prefix(end + 1);
-    }
-    parts.push_back(text);
-    return parts;
-}
-
-/// A number from 0 to `most`, or nothing.
-std::optional<double> number_up_to(std::string_view part, double most) {
-    double value = 0.0;
-    const char* const end = part.data() + part.size();
-    const auto [rest, error] = std::from_chars(part.data(), end, value);
-    if (part.empty() || error != std::errc() || rest != end || !(value >= 0.0 && value <= most)) {
-        return std::nullopt;
-    }
-    return value;
-}
-
 double number_of(std::string_view part, double most, const std::string& text) {
-    const std::optional<double> value = number_up_to(part, most);
+    const std::optional<double> value = number_in(part, 0.0, most);
     if (!value) {
         refuse(text);
     }
@@ -74,7 +52,7 @@ bias_choice parse_bias(const std::string& text) {
     result.kind = bias_kind::none;
     bool has_kind = false;
     bool has_depth = false;
-    for (const std::string_view part : parts_of(text, '+')) {
+    for (const std::string& part : split(text, '+')) {
         if (part == "linear" || part == "back-face") {
             if (has_depth) {
                 refuse(text);
@@ -83,7 +61,7 @@ bias_choice parse_bias(const std::string& text) {
             result.depth = part == "linear" ? depth_kind::linear : depth_kind::back_faces;
             continue;
         }
-        const std::vector<std::string_view> words = parts_of(part, ':');
+        const std::vector<std::string> words = split(part, ':');
         constexpr std::array<std::string_view, 5> names{"plane", "none", "constant", "slope",
                                                         "footprint"};
         const auto* const found = std::find(names.begin(), names.end(), words.front());
@@ -113,14 +91,14 @@ bias_choice parse_bias(const std::string& text) {
 }
 
 filter_choice parse_filter(const std::string& text) {
-    const std::vector<std::string_view> words = parts_of(text, ':');
+    const std::vector<std::string> words = split(text, ':');
     for (const filter_kind& each : filter_kinds) {
         if (each.name != words.front() || words.size() != (each.most > 0.0 ? 2u : 1u)) {
             continue;
         }
         filter_choice result{each.kind};
         if (each.most > 0.0) {
-            result.radius = number_up_to(words[1], each.most).value_or(0.0);
+            result.radius = number_in(words[1], 0.0, each.most).value_or(0.0);
         }
         if (result.radius > 0.0 || each.most == 0.0) {
             return result;

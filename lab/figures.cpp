@@ -2,9 +2,7 @@
 
 #include "lab/bias_run.hpp"
 #include "lab/method_table.hpp"
-#include "lab/plot.hpp"
 #include "lab/raster_figure.hpp"
-#include "lab/report_parts.hpp"
 #include "lab/view_arguments.hpp"
 #include "lab/vpl.hpp"
 
@@ -116,11 +114,7 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
     const shader shades(world, rays, samples, camera, light);
     const int map = wanted.maps.front();
     const auto write = [&](const std::string& kind, const picture& source) {
-        png_file file = png_of(source);
-        folder.write(
-            picture_name({wanted.preset, world.name, "c" + camera.label, "l" + light.label, kind}),
-            file.bytes);
-        return file;
+        return write_figure_picture(wanted, world, camera, light, folder, kind, source);
     };
     figure_record record{wanted.preset, world.name, camera.label, light.label, {}};
     figure_pictures seen{all.figures.size(),
@@ -181,51 +175,32 @@ figure_pictures run_figure(const options& wanted, const scene& world, renderer& 
 }
 
 std::string figure_section(const results& all, const figure_pictures& seen) {
-    const figure_record& record = all.figures[seen.figure];
-    if (is_raster_figure(record.name)) {
+    const std::string& name = all.figures[seen.figure].name;
+    if (is_raster_figure(name)) {
         return raster_figure_section(all, seen);
     }
-    const bool blurs = record.name == "figure8";
-    std::string html =
-        "<section class=\"figure\" style=\"--cell: " + std::string(blurs ? "180" : "270") +
-        "px\">\n<h2>" + escaped(record.scene) + ", after figure " + (blurs ? "8" : "6") +
-        " of Scherzer 2005</h2>\n<p>camera " + escaped(seen.camera_text) + "<br>light " +
-        escaped(seen.light_text) +
-        "</p>\n<p>Acne: lit pixels that are dark although their texel holds nothing before the "
-        "plane of their own face. Displacement: the bias along the light ray over the side of "
-        "the texel, a mean; so far a shadow recedes from a caster that it touches" +
-        (blurs ? ". Light error: mean difference of the blurred light and that of the ray tracer. "
-                 "Acne "
-                 "counts what the blur leaves with less than half of the light"
-               : "") +
-        ".</p>\n<figure class=\"reference\">" +
-        png_image(seen.reference, record.scene + ", ray traced") +
-        "<figcaption>ray traced</figcaption></figure>\n";
-    std::string row;
-    for (std::size_t i = 0; i < record.cells.size(); ++i) {
-        const figure_record::cell& cell = record.cells[i];
-        const run_record& run = all.runs[cell.run];
-        if (cell.row != row) {
-            html += (row.empty() ? "" : "</div>\n");
-            html += "<h3>" + escaped(cell.row) + "</h3>\n<div class=\"matrix\">\n";
-            row = cell.row;
-        }
-        const std::optional<double> acne = blurs ? cell.filtered_acne : run.bias_effect.acne_ratio;
-        html += "<figure>" + png_image(seen.cells[i], cell.row + ", " + cell.column) +
-                "<figcaption><b>" + escaped(cell.column) + "</b>: acne&nbsp;" + percent_text(acne) +
-                "&nbsp;%, displacement&nbsp;" + texels_text(run.bias_effect.displacement_texels) +
-                "&nbsp;texels, ";
-        if (blurs) {
-            html += "light error&nbsp;" + percent_text(cell.mean_light_error) + "&nbsp;%";
-        } else {
-            html += "wrong&nbsp;" +
-                    percent_text(run.against_truth.ratio(run.against_truth.false_shadow +
-                                                         run.against_truth.false_light)) +
+    const bool blurs = name == "figure8";
+    return matrix_section(
+        all, seen,
+        {std::string("figure ") + (blurs ? "8" : "6") + " of Scherzer 2005",
+         std::string("Acne: lit pixels that are dark although their texel holds nothing before the "
+                     "plane of their own face. Displacement: the bias along the light ray over the "
+                     "side of the texel, a mean; so far a shadow recedes from a caster that it "
+                     "touches") +
+             (blurs ? ". Light error: mean difference of the blurred light and that of the ray "
+                      "tracer. Acne counts what the blur leaves with less than half of the light."
+                    : "."),
+         blurs ? 180 : 270, [blurs](const figure_record::cell& cell, const run_record& run) {
+             const comparison& c = run.against_truth;
+             return "acne&nbsp;" +
+                    percent_text(blurs ? cell.filtered_acne : run.bias_effect.acne_ratio) +
+                    "&nbsp;%, displacement&nbsp;" +
+                    texels_text(run.bias_effect.displacement_texels) + "&nbsp;texels, " +
+                    (blurs
+                         ? "light error&nbsp;" + percent_text(cell.mean_light_error)
+                         : "wrong&nbsp;" + percent_text(c.ratio(c.false_shadow + c.false_light))) +
                     "&nbsp;%";
-        }
-        html += "</figcaption></figure>\n";
-    }
-    return html + (row.empty() ? "" : "</div>\n") + "</section>\n";
+         }});
 }
 
 } // namespace lab

@@ -39,4 +39,10 @@ template <typename T> std::optional<T> number(std::string_view text) {
     return value;
 }
 
+/// The same where it is from `least` to `largest`; NaN is nowhere.
+template <typename T> std::optional<T> number_in(std::string_view text, T least, T largest) {
+    const std::optional<T> value = number<T>(text);
+    return value && *value >= least && *value <= largest ? value : std::nullopt;
+}
+
 } // namespace lab

@@ -2,8 +2,6 @@
 
 #include "lab/bias_run.hpp"
 #include "lab/method_table.hpp"
-#include "lab/plot.hpp"
-#include "lab/report_parts.hpp"
 #include "lab/view_arguments.hpp"
 #include "lab/warp_pictures.hpp"
 
@@ -146,11 +144,7 @@ figure_pictures run_raster_figure(const options& wanted, const scene& world, ren
     const glm::ivec2 map_corner = window_of_difference(map_marks, glm::ivec2(map), map_window);
 
     const auto write = [&](const std::string& kind, const picture& source) {
-        png_file file = png_of(source);
-        folder.write(
-            picture_name({wanted.preset, world.name, "c" + camera.label, "l" + light.label, kind}),
-            file.bytes);
-        return file;
+        return write_figure_picture(wanted, world, camera, light, folder, kind, source);
     };
     figure_record record{wanted.preset, world.name, camera.label, light.label, {}};
     const picture reference = shades.shade(truth);
@@ -182,39 +176,24 @@ figure_pictures run_raster_figure(const options& wanted, const scene& world, ren
 }
 
 std::string raster_figure_section(const results& all, const figure_pictures& seen) {
-    const figure_record& record = all.figures[seen.figure];
-    std::string html =
-        "<section class=\"figure\" style=\"--cell: 256px\">\n<h2>" + escaped(record.scene) +
-        ", after figure 7 of Rosen 2012</h2>\n<p>camera " + escaped(seen.camera_text) +
-        "<br>light " + escaped(seen.light_text) +
-        "</p>\n<p>The same part of the picture and of the map, drawn in every way of --raster, "
-        "where those that cut edges or draw hulls differ most. Red: pixels whose shadow is wrong, "
-        "and texels whose depth is not that of the ideal map. Shares are of the whole picture and "
-        "the whole map.</p>\n<figure class=\"reference\">" +
-        png_image(seen.reference, record.scene + ", ray traced") +
-        "<figcaption>ray traced</figcaption></figure>\n";
-    std::string row;
-    for (std::size_t i = 0; i < record.cells.size(); ++i) {
-        const figure_record::cell& cell = record.cells[i];
-        const run_record& run = all.runs[cell.run];
-        if (cell.row != row) {
-            html += (row.empty() ? "" : "</div>\n");
-            html += "<h3>" + escaped(cell.row) + "</h3>\n<div class=\"matrix\">\n";
-            row = cell.row;
-        }
-        const comparison& c = run.against_truth;
-        const bool traced = cell.column == "ideal";
-        html += "<figure>" + png_image(seen.cells[i], cell.row + ", " + cell.column) +
-                png_image(seen.maps[i], cell.row + ", " + cell.column + ", the map") +
-                "<figcaption><b>" + escaped(cell.column) + "</b>: wrong&nbsp;pixels&nbsp;" +
-                percent_text(c.ratio(c.false_shadow + c.false_light)) +
-                "&nbsp;%, wrong&nbsp;texels&nbsp;" + percent_text(cell.wrong_texels) + "&nbsp;%" +
-                (traced ? ", a&nbsp;ray&nbsp;per&nbsp;texel"
-                        : ", triangles&nbsp;" + std::to_string(run.result.triangles) +
-                              ", frame&nbsp;" + ms_text(run.result.frame_ms_median) + "&nbsp;ms") +
-                "</figcaption></figure>\n";
-    }
-    return html + (row.empty() ? "" : "</div>\n") + "</section>\n";
+    return matrix_section(
+        all, seen,
+        {"figure 7 of Rosen 2012",
+         "The same part of the picture and of the map, drawn in every way of --raster, where those "
+         "that cut edges or draw hulls differ most. Red: pixels whose shadow is wrong, and texels "
+         "whose depth is not that of the ideal map. Shares are of the whole picture and the whole "
+         "map.",
+         256, [](const figure_record::cell& cell, const run_record& run) {
+             const comparison& c = run.against_truth;
+             return "wrong&nbsp;pixels&nbsp;" +
+                    percent_text(c.ratio(c.false_shadow + c.false_light)) +
+                    "&nbsp;%, wrong&nbsp;texels&nbsp;" + percent_text(cell.wrong_texels) +
+                    "&nbsp;%" +
+                    (cell.column == "ideal"
+                         ? ", a&nbsp;ray&nbsp;per&nbsp;texel"
+                         : ", triangles&nbsp;" + std::to_string(run.result.triangles) +
+                               ", frame&nbsp;" + ms_text(run.result.frame_ms_median) + "&nbsp;ms");
+         }});
 }
 
 } // namespace lab

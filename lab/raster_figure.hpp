@@ -1,7 +1,10 @@
 // Figure 7 of Rosen 2012: what each way to draw a warped map does to it and to the picture.
 #pragma once
 
-#include "lab/figures.hpp"
+#include "lab/figure_matrix.hpp"
+#include "lab/methods.hpp"
+#include "lab/progress.hpp"
+#include "lab/truth.hpp"
 
 #include <cstddef>
 #include <cstdint>

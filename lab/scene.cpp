@@ -1,11 +1,11 @@
 #include "lab/scene.hpp"
 
+#include "lab/numbers.hpp"
 #include "lab/scene_builder.hpp"
 #include "lab/scene_detail.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 
 namespace lab {
@@ -52,15 +52,13 @@ scene open_scene(const std::string& name_or_path, unsigned seed) {
     const std::size_t colon = name_or_path.find(':');
     if (colon != std::string::npos && is_builtin_scene(name_or_path.substr(0, colon))) {
         const std::string text = name_or_path.substr(colon + 1);
-        std::size_t corners = 0;
-        const char* const end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data(), end, corners);
-        if (error != std::errc() || rest != end || corners < 1) {
+        const std::optional<std::size_t> corners = number<std::size_t>(text);
+        if (corners.value_or(0) < 1) {
             throw bad_input("--scene NAME:CORNERS wants a whole number from 1 on, not '" + text +
                             "'");
         }
         scene world = build_scene(name_or_path.substr(0, colon), seed);
-        refine(world, corners);
+        refine(world, *corners);
         return world;
     }
     const std::filesystem::path path(name_or_path);

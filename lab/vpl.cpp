@@ -1,6 +1,7 @@
 #include "lab/vpl.hpp"
 
 #include "gl/timer.hpp"
+#include "lab/numbers.hpp"
 #include "lab/plot.hpp"
 #include "lab/scene_builder.hpp"
 #include "lab/shaders.hpp"
@@ -13,7 +14,6 @@
 #include <warpshadow/paraboloid.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -261,14 +261,12 @@ std::size_t points_of_vpl(const std::string& preset) {
         return usual_points;
     }
     const std::string text = preset.substr(4);
-    std::size_t value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || rest != end || value < 1 || value > most_points) {
+    const std::optional<std::size_t> value = number_in<std::size_t>(text, 1, most_points);
+    if (!value) {
         throw bad_input("--preset vpl:POINTS wants 1 to " + std::to_string(most_points) +
                         " points, not '" + text + "'");
     }
-    return value;
+    return *value;
 }
 
 figure_defaults defaults_of_vpl() {

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "gl/objects.hpp"
-#include "lab/figures.hpp"
+#include "lab/figure_matrix.hpp"
 #include "lab/objects.hpp"
 #include "lab/options.hpp"
 #include "lab/passes.hpp"

@@ -1,11 +1,11 @@
 #include "lab/warp_arguments.hpp"
 
+#include "lab/numbers.hpp"
 #include "lab/scene.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string_view>
@@ -20,27 +20,23 @@ constexpr int largest_table = 4096;
 
 /// A number in a range, or a line that names the option and the range.
 float number_in(const std::string& text, const char* option, float least, float largest) {
-    float value = 0.0f;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || rest != end || !(value >= least && value <= largest)) {
+    const std::optional<float> value = lab::number_in(std::string_view(text), least, largest);
+    if (!value) {
         char range[64];
         std::snprintf(range, sizeof range, "%g to %g", static_cast<double>(least),
                       static_cast<double>(largest));
         throw bad_input(std::string(option) + " wants a number, " + range + ", not '" + text + "'");
     }
-    return value;
+    return *value;
 }
 
 int whole_in(const std::string& text, const char* option, int least, int largest) {
-    int value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || rest != end || value < least || value > largest) {
+    const std::optional<int> value = lab::number_in(std::string_view(text), least, largest);
+    if (!value) {
         throw bad_input(std::string(option) + " wants a whole number, " + std::to_string(least) +
                         " to " + std::to_string(largest) + ", not '" + text + "'");
     }
-    return value;
+    return *value;
 }
 
 ws::cell_rule rule_of(const std::string& text, const char* option) {

@@ -1,11 +1,11 @@
 #include "lab/warped_raster.hpp"
 
+#include "lab/numbers.hpp"
 #include "lab/truth.hpp"
 
 #include <warpshadow/warp_strength.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -54,9 +54,8 @@ raster_choice parse_raster(const std::string& text) {
         if (!has_value(found->kind)) {
             return result;
         }
-        const char* const end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, result.value);
-        if (error == std::errc() && rest == end && result.value >= 0.1 && result.value <= 100.0) {
+        if (const auto value = number_in(text.substr(colon + 1), 0.1, 100.0)) {
+            result.value = *value;
             return result;
         }
     }
