@@ -1,4 +1,4 @@
-"""Blocks of a document, and plots beside it, that are written from measured results.
+"""Blocks of a document, tables in them, and plots beside it, written from measured results.
 
 A block lies between <!-- NAME:begin --> and <!-- NAME:end -->.
 """
@@ -21,6 +21,12 @@ def fill(page, blocks, script, check):
         page.write_text(updated, encoding="utf-8")
     elif updated != text:
         sys.exit(f"{page.name} does not say what was measured: run {script}")
+
+
+def table(head, rows):
+    """A table whose first column is text and whose others are numbers."""
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " --: |" * (len(head) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def keep_pictures(folder, pictures, script, check):

@@ -15,7 +15,7 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page_blocks import fill  # noqa: E402
+from page_blocks import fill, table  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "warp-cost.md"
@@ -65,11 +65,6 @@ def gather(folder):
 
     save("cpu", {"microseconds": {"o2": medians("warp_build_bench.json"),
                                   "native": medians("warp_build_bench_native.json")}})
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "| --- |" + " --: |" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def ratio(value):

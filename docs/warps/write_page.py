@@ -15,7 +15,7 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page_blocks import fill  # noqa: E402
+from page_blocks import fill, table  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 PAGE = FOLDER.parent / "warps.md"
@@ -61,11 +61,6 @@ def mean(values):
 def name_of(view, side=None):
     text = f"{view[0]}, camera {view[1]}, light {view[2]}"
     return text if side is None else f"{text}, {side}²"
-
-
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|---|" + "---:|" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
 def claims(runs):
