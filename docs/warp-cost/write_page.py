@@ -5,7 +5,7 @@ usage: docs/warp-cost/write_page.py [--check | --gather FOLDER]
 
 With --check nothing is written; the exit code tells whether the tables are what the results say.
 With --gather the results are first collected from FOLDER, to which `./run.sh measure warp-cost`
-writes what the benchmarks say.
+writes what the benchmarks and the lab say. papers.json is not measured: it is what papers say.
 """
 
 import json
@@ -15,6 +15,7 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import paper_tables  # noqa: E402
 from page_blocks import fill, table  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parent
@@ -63,6 +64,11 @@ def gather(folder):
                 times.setdefault(run["run_name"], []).append(run["cpu_time"])
         return {name: rounded(statistics.median(each)) for name, each in times.items()}
 
+    def report(name):
+        found = folder / name / "results.json"
+        return json.loads(found.read_text(encoding="utf-8")) if found.exists() else None
+
+    save("lab", paper_tables.gather(report))
     save("cpu", {"microseconds": {"o2": medians("warp_build_bench.json"),
                                   "native": medians("warp_build_bench_native.json")}})
 
@@ -127,7 +133,8 @@ def main():
         gather(pathlib.Path(arguments[1]))
     elif arguments and not check:
         sys.exit(__doc__.strip())
-    blocks = {"passes": passes(), "cpu": cpu()}
+    blocks = {"passes": passes(), "cpu": cpu(),
+              **paper_tables.blocks(load("papers"), load("lab"))}
     fill(PAGE, blocks, "docs/warp-cost/write_page.py", check)
 
 
