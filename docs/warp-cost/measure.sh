@@ -17,7 +17,7 @@ done
 papers=(--scene outdoor,interior,colonnade --tables 512)
 milet=("${papers[@]}" --map 512 --view 1024x1024)
 rosen=("${papers[@]}" --map 1024 --view 960x540)
-for round in 1 2; do
+for round in 1 2 3; do
     lab "${milet[@]}" --repeat 1 --methods sm,min-sm,dv,rtw-backward,notw,sv \
         --raster rule:2.5,exact --out "$out/milet-$round"
     lab "${rosen[@]}" --repeat 1 --methods sm,rtw-backward \
