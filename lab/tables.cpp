@@ -32,6 +32,11 @@ bool uses_functions(const warp_options& options) {
     return options.functions.distance || options.functions.edge || options.functions.normal;
 }
 
+bool asks_for_ends(const warp_options& options) {
+    return options.from == analysis::hybrid && options.functions.edge &&
+           options.edges == edge_kind::shadow_end;
+}
+
 bool looks_from_the_light(const warp_options& options) {
     return options.from == analysis::forward ||
            (options.from == analysis::hybrid && options.functions.edge);
@@ -52,7 +57,7 @@ table_passes::splat_programs& table_passes::programs(const warp_options& options
     if (uses_functions(options) || options.from == analysis::forward) {
         defines.emplace_back("WS_SPLAT_WEIGHTED");
         if (options.functions.edge) {
-            defines.emplace_back("LIGHT_EDGES");
+            defines.emplace_back(asks_for_ends(options) ? "SHADOW_ENDS" : "LIGHT_EDGES");
         }
     }
     if (options.cells == ws::cell_rule::largest) {
@@ -102,7 +107,7 @@ std::uint64_t table_passes::most_counts(const warp_options& options) const {
     return weighs ? std::numeric_limits<std::uint32_t>::max() : sample_count(options);
 }
 
-void table_passes::look_from_the_light(std::size_t index, bool edges) {
+void table_passes::look_from_the_light(std::size_t index, bool mark_edges) {
     if (!seen_by_light_) {
         seen_by_light_.emplace(light_image_size, 1, 0, 0);
         light_edges_ = gl::texture(GL_R8UI, light_image_size, light_image_size);
@@ -110,7 +115,7 @@ void table_passes::look_from_the_light(std::size_t index, bool edges) {
     }
     gpu_.draw_plain_map(*seen_by_light_, 0, index);
     seen_by_light_->depth.bind(unit_light_depths);
-    if (edges) {
+    if (mark_edges) {
         mark_edges_.set("ws_edge_bias", edge_bias);
         light_edges_.bind_image(0, GL_WRITE_ONLY);
         mark_edges_.dispatch(light_image_size, light_image_size);
@@ -226,7 +231,9 @@ void table_passes::prepare(map_resources& maps, std::size_t index, const warp_op
     }
     (before.known ? before : none_).shadowed.bind(unit_known);
     if (looks_from_the_light(options)) {
-        gpu_.timed_pass("light image", [&] { look_from_the_light(index, options.functions.edge); });
+        gpu_.timed_pass("light image", [&] {
+            look_from_the_light(index, options.functions.edge && !asks_for_ends(options));
+        });
     }
 }
 

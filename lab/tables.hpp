@@ -54,7 +54,7 @@ class table_passes {
     };
     void prepare(map_resources& maps, std::size_t index, const warp_options& options,
                  const warpshadow::frustum<double>& camera, const shadow_memory& before);
-    void look_from_the_light(std::size_t index, bool edges);
+    void look_from_the_light(std::size_t index, bool mark_edges);
     void splat(map_resources& maps, std::size_t index, const warp_options& options, bool columns);
     void build_axis(map_resources& maps, std::size_t index, const warp_options& options,
                     bool columns, bool keep_counts);

@@ -73,15 +73,21 @@ void take_importance(const std::vector<std::string>& given, warp_wishes& wishes)
             begin = end + 1;
             if (name == "distance") {
                 wishes.distance = true;
-            } else if (name == "edges") {
+            } else if (name == "edges" || name == "ends") {
+                const edge_kind kind =
+                    name == "ends" ? edge_kind::shadow_end : edge_kind::discontinuity;
+                if (wishes.edges.value_or(kind) != kind) {
+                    throw bad_input("--importance takes either edges or ends, not both");
+                }
                 wishes.edge = true;
+                wishes.edges = kind;
             } else if (name == "normal") {
                 wishes.normal = true;
             } else if (name == "sum") {
                 wishes.add = true;
             } else if (name != "desired-view" && name != "product") {
-                throw bad_input("--importance wants desired-view, distance, edges, normal, and sum "
-                                "or product, not '" +
+                throw bad_input("--importance wants desired-view, distance, edges or ends, normal, "
+                                "and sum or product, not '" +
                                 std::string(name) + "'");
             }
         }
@@ -96,8 +102,9 @@ void add_warp_arguments(CLI::App& app, warp_arguments& given) {
     };
     app.add_option("--importance", given.importance,
                    "Importance functions, comma-separated: desired-view (always), distance, edges "
-                   "(rtw-forward and rtw-hybrid), normal; product or sum of them (each method's "
-                   "own, see below)")
+                   "of the light's depths (rtw-forward, rtw-hybrid and notw-hybrid) or ends of "
+                   "shadows (the latter two), normal; product or sum of them (each method's own, "
+                   "see below)")
         ->allow_extra_args(false)
         ->group(table_group);
     add("--tables", given.tables,

@@ -17,6 +17,12 @@ enum class analysis {
     hybrid    ///< the view samples, with the shadow edges of the light's depth image
 };
 
+/// What an edge is to hybrid analysis.
+enum class edge_kind {
+    discontinuity, ///< of the depths in the light's image, as published
+    shadow_end     ///< nine shadow tests in that image disagree; for either axis by itself
+};
+
 /// Which shadows count more at their ends, besides the importance functions.
 enum class known_shadows {
     none,       ///< no shadow is known yet
@@ -36,6 +42,7 @@ struct warp_options {
     warpshadow::importance_options<float> functions =
         {}; ///< but for near and far, which are the camera's
     warpshadow::cell_rule cells = warpshadow::cell_rule::sum; ///< several samples in a cell
+    edge_kind edges = edge_kind::discontinuity;
     known_shadows shadows = known_shadows::none;
     float share = 1.0f; ///< with known shadows: what a sample counts away from their ends
     float power = 1.0f; ///< of what a window counts, or a line: below 1, less goes to the most seen
@@ -52,6 +59,7 @@ struct warp_options {
 /// What the command line says about all methods with tables.
 struct warp_wishes {
     std::optional<bool> distance, edge, normal, add;
+    std::optional<edge_kind> edges;
     std::optional<warpshadow::cell_rule> cells, collapse;
     std::optional<float> window, floor, width, share, power, shear;
     std::optional<warpshadow::window_shape> shape;
@@ -65,6 +73,7 @@ struct warp_wishes {
         take(options.functions.distance, distance);
         take(options.functions.edge, edge);
         take(options.functions.normal, normal);
+        take(options.edges, edges);
         take(options.functions.add, add);
         take(options.cells, cells);
         take(options.collapse, collapse);

@@ -12,6 +12,7 @@
 #include <warpshadow/status.hpp>
 
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -75,12 +76,42 @@ bool depth_edge(T centre, glm::vec<4, T> ring0, glm::vec<4, T> ring1, T bias) {
     return first || second;
 }
 
-/// 1 on a shadow edge, α elsewhere (Rosen 2012, §5.3: α = 0.001).
+/// Whether a shadow ends at a point, and across which axis of the map, from nine shadow tests.
 ///
-/// @param edge  from `depth_edge` on the light's depths, or on the shadows that were seen last
+/// The point's plane is compared with the light's depth image in the texel that holds the point and
+/// in its eight neighbours (`shadow_end_at`). Where the answers differ a shadow ends, across their
+/// gradient, and an axis needs texels only for what changes along it. Unlike an edge of the depth
+/// image, an end is found only where the point itself may be tested wrongly: not on the caster that
+/// throws the shadow, and not where one caster hides another.
+/// @param below, level, above answers of three rows, each along u: 1 lit, 0 dark, or between
+/// @return the unit vector along the gradient, without signs; one that is the same along both axes
+///         where the answers differ and have no gradient; 0 where all nine agree; finite always
+template <typename T>
+glm::vec<2, T> shadow_end(glm::vec<3, T> below, glm::vec<3, T> level, glm::vec<3, T> above) {
+    glm::vec<3, T> first = glm::clamp(below, T(0), T(1));
+    glm::vec<3, T> second = glm::clamp(level, T(0), T(1));
+    glm::vec<3, T> third = glm::clamp(above, T(0), T(1));
+    glm::vec<3, T> along_u = first + second + third;
+    glm::vec<3, T> along_v = third - first;
+    T u = glm::abs(along_u.z - along_u.x);
+    T v = glm::abs(along_v.x + along_v.y + along_v.z);
+    T slope = glm::sqrt(u * u + v * v);
+    if (slope > T(0)) {
+        return glm::vec<2, T>(u / slope, v / slope);
+    }
+    glm::vec<3, T> lo = glm::min(glm::min(first, second), third);
+    glm::vec<3, T> hi = glm::max(glm::max(first, second), third);
+    bool differ = glm::max(glm::max(hi.x, hi.y), hi.z) > glm::min(glm::min(lo.x, lo.y), lo.z);
+    return glm::vec<2, T>(differ ? glm::sqrt(T(0.5)) : T(0));
+}
+
+/// 1 on a shadow edge, α without (Rosen 2012, §5.3: α = 0.001), and linear in between.
+///
+/// @param edge  0 or 1 from `depth_edge` on the light's depths, or on the shadows that were seen
+///              last; a component of `shadow_end`; in [0, 1]
 /// @param alpha importance without an edge, in [0, 1]
-template <typename T> T edge_importance(bool edge, T alpha) {
-    return edge ? T(1) : alpha;
+template <typename T> T edge_importance(T edge, T alpha) {
+    return alpha + (T(1) - alpha) * edge;
 }
 
 /// More for surfaces that face the viewer: 1 + β · clamp(−n · v, 0, 1) (Rosen 2012, §5.4: β = 2).
@@ -105,7 +136,7 @@ template <typename T> struct seen_point {
     T eye_distance = T(1);                   ///< along the direction of view
     T view_cosine = T(1);                    ///< −n · v, see `normal_importance`
     T light_cosine = T(1);                   ///< n · l, see `lit_importance`
-    bool edge = false;                       ///< whether a shadow edge passes, see `depth_edge`
+    T edge = T(0); ///< whether a shadow edge passes, see `edge_importance`
 };
 
 /// Which of the functions are combined, and how. The default is Milet's: count what faces the
@@ -149,6 +180,7 @@ T combined_importance(T distance, T edge, T normal, const importance_options<T>&
 /// Importance of a seen point: backward analysis, and hybrid where `edge` comes from the light's
 /// depth image (Rosen 2012, §4.1).
 ///
+/// With `shadow_end` a point has an importance for either axis: ask twice.
 /// Points that do not face the light get 0, whatever the combination.
 /// @param point   the point
 /// @param options functions and their constants
@@ -168,13 +200,13 @@ T view_importance(const seen_point<T>& point, const importance_options<T>& optio
 /// texels. Backward analysis has no such hole.
 /// @param clip     where the texel's surface is in the camera's clip space
 /// @param near_ndc, far_ndc z/w of the camera's near and far plane
-/// @param edge     from `depth_edge`
+/// @param edge     0 or 1 from `depth_edge`
 /// @param view_cosine −n · v if the normal is known, else 0
 /// @param options  functions and their constants; `near_distance`, `inverse_far` and `least_cosine`
 ///                 are not used
 /// @return         0 outside the camera's view
 template <typename T>
-T forward_importance(glm::vec<4, T> clip, T near_ndc, T far_ndc, bool edge, T view_cosine,
+T forward_importance(glm::vec<4, T> clip, T near_ndc, T far_ndc, T edge, T view_cosine,
                      const importance_options<T>& options) {
     T seen = desired_view_importance(clip, near_ndc, far_ndc);
     if (!(seen > T(0))) {

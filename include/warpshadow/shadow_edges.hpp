@@ -6,6 +6,7 @@
 // analysis alone, and need no depth image.
 #pragma once
 
+#include <warpshadow/bias.hpp>
 #include <warpshadow/conventions.hpp>
 #include <warpshadow/importance.hpp>
 #include <warpshadow/importance_functions.hpp>
@@ -14,6 +15,7 @@
 #include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstddef>
@@ -84,6 +86,43 @@ status mark_depth_edges(const image_view<T>& depths, T bias, std::span<std::uint
         }
     }
     return status::ok;
+}
+
+/// Where the light's depth image says that a shadow may end at a point, and across which axis.
+///
+/// Nine tests of the point's plane against the texel that holds the point and its neighbours, each
+/// at the texel's own centre, as `plane_depth_step` compares. Texels outside repeat the border. The
+/// device does the same in glsl/passes/shadow_end.glsl.
+/// @param depths light's depth image over the map: greater is farther from the light
+/// @param p      the point in map space before a warp: position in [0, 1]² (clamped to it), depth
+/// @param normal of its surface in map space, any length; see `map_normal`
+/// @param bias   what a texel may lie before the plane and still be that surface, in units of depth
+/// @return       see `shadow_end`; 0 for a NaN in p and for an image that does not hold its size
+template <typename T>
+glm::vec<2, T> shadow_end_at(const image_view<T>& depths, glm::vec<3, T> p, glm::vec<3, T> normal,
+                             T bias) {
+    const glm::vec<2, T> at(p);
+    if (!fits(depths) || !(p.x - p.x == T(0)) || !(p.y - p.y == T(0))) {
+        return glm::vec<2, T>(T(0));
+    }
+    const glm::vec<2, T> size(static_cast<T>(depths.width), static_cast<T>(depths.height));
+    const glm::vec<2, T> corner =
+        glm::min(glm::floor(glm::clamp(at, T(0), T(1)) * size), size - T(1));
+    glm::vec<3, T> lit[3];
+    for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 3; ++x) {
+            const int i = glm::clamp(static_cast<int>(corner.x) + x - 1, 0, depths.width - 1);
+            const int j = glm::clamp(static_cast<int>(corner.y) + y - 1, 0, depths.height - 1);
+            const glm::vec<2, T> centre =
+                (glm::vec<2, T>(static_cast<T>(i), static_cast<T>(j)) + T(0.5)) / size;
+            const T plane = p.z + plane_depth_step(normal, at, centre, T(1));
+            const std::size_t texel =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(depths.width) +
+                static_cast<std::size_t>(i);
+            lit[y][x] = depths.texels[texel] < plane - bias ? T(0) : T(1);
+        }
+    }
+    return shadow_end(lit[0], lit[1], lit[2]);
 }
 
 /// Marks the pixels of a view at which a shadow ends: lit beside dark, on one surface.
@@ -178,12 +217,13 @@ splat_result splat_forward(const image_view<T>& depths, const forward_options<T>
             const detail::neighbourhood<T> n = detail::neighbours_of(depths, i, j);
             const bool edge =
                 functions.edge && depth_edge(n.centre, n.ring0, n.ring1, options.bias);
+            const T share = edge ? T(1) : T(0);
             const glm::vec<4, T> clip =
                 options.camera_from_map * glm::vec<4, T>(u, v, n.centre, T(1));
             const T weight =
                 n.centre == options.empty_depth
                     ? T(0)
-                    : forward_importance(clip, near_ndc, far_ndc, edge, T(0), functions);
+                    : forward_importance(clip, near_ndc, far_ndc, share, T(0), functions);
             const auto cell = static_cast<std::size_t>(cell_of(v, map.height)) *
                                   static_cast<std::size_t>(map.width) +
                               static_cast<std::size_t>(cell_of(u, map.width));

@@ -28,9 +28,9 @@ bool ws_view_sample(ivec2 texel, out vec2 p)
 uint ws_sample_weight(ivec2 texel, vec2 p)
 {
     vec2 centre;
-    bool edge = false;
+    float edge = 0.0;
 #ifdef LIGHT_EDGES
-    edge = texelFetch(light_edges, texel, 0).r != 0u;
+    edge = texelFetch(light_edges, texel, 0).r != 0u ? 1.0 : 0.0;
 #endif
     float weight =
         ws_forward_importance(camera_clip(texel, centre), -1.0, 1.0, edge, 0.0, functions);

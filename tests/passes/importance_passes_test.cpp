@@ -375,6 +375,76 @@ TEST_CASE("passes: a power of what windows count") {
     }
 }
 
+TEST_CASE("passes: ends of shadows are those of the host") {
+    const gl::headless_context context;
+    const gl::program ask = pass(R"(
+#include "warpshadow/importance_functions.glsl"
+#include "warpshadow/warp.glsl"
+#include "warpshadow/bias.glsl"
+#include "passes/shadow_end.glsl"
+layout(local_size_x = 64) in;
+struct asked { vec4 p; vec4 normal; };
+layout(std430, binding = 1) readonly buffer question_buffer { asked questions[]; };
+layout(std430, binding = 2) writeonly buffer answer_buffer { vec2 answers[]; };
+uniform float bias;
+void main()
+{
+    int i = int(gl_GlobalInvocationID.x);
+    if (i < questions.length()) {
+        answers[i] = ws_shadow_end_at(questions[i].p.xyz, questions[i].normal.xyz, bias);
+    }
+}
+)");
+    const float bias = 0.001f;
+    ask.set("bias", bias);
+    std::mt19937 random(11u);
+    std::uniform_real_distribution<float> place(-0.05f, 1.05f);
+    std::uniform_real_distribution<float> share(0.0f, 1.0f);
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(2, 9), glm::ivec2(61, 40)}) {
+        CAPTURE(size.x, size.y);
+        std::vector<float> depths;
+        for (int i = 0; i < size.x * size.y; ++i) {
+            depths.push_back(share(random) < 0.3f ? 0.25f : 0.75f);
+        }
+        gl::texture image(GL_R32F, size.x, size.y);
+        image.write(depths.data());
+        image.bind(0);
+        std::vector<glm::vec4> questions;
+        for (int i = 0; i < 5000; ++i) {
+            questions.emplace_back(place(random), place(random), share(random), 0.0f);
+            questions.emplace_back(share(random) - 0.5f, share(random) - 0.5f, 1.0f, 0.0f);
+        }
+        const gl::buffer in(questions.size() * sizeof(glm::vec4), questions.data());
+        const gl::buffer out(questions.size() / 2 * sizeof(glm::vec2), nullptr, GL_DYNAMIC_COPY);
+        in.bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+        out.bind_base(GL_SHADER_STORAGE_BUFFER, 2);
+        ask.dispatch(static_cast<int>(questions.size() / 2));
+        gl::wait_for_writes();
+        const std::vector<glm::vec2> device = out.read<glm::vec2>();
+        std::size_t ends = 0;
+        std::size_t close = 0; // to one of two answers
+        for (std::size_t i = 0; i < device.size(); ++i) {
+            const auto on_host = [&](float of_bias) {
+                return ws::shadow_end_at(ws::image_view<float>{depths, size.x, size.y},
+                                         glm::vec3(questions[2 * i]),
+                                         glm::vec3(questions[2 * i + 1]), of_bias);
+            };
+            const float margin = 1e-5f; // far beyond what either side rounds
+            const glm::vec2 least = on_host(bias - margin);
+            const glm::vec2 most = on_host(bias + margin);
+            if (least != most) {
+                ++close;
+                continue;
+            }
+            REQUIRE(std::abs(device[i].x - least.x) <= 1e-6f);
+            REQUIRE(std::abs(device[i].y - least.y) <= 1e-6f);
+            ends += least.x + least.y > 0.0f ? 1 : 0;
+        }
+        CHECK(close < 50);
+        CHECK((ends > 1000) == (size.x * size.y > 1));
+    }
+}
+
 TEST_CASE("passes: edges of a depth image are those of the host") {
     const gl::headless_context context;
     const gl::program mark = pass("#include \"warpshadow/importance_functions.glsl\"\n"

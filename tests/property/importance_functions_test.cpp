@@ -132,8 +132,53 @@ TEMPLATE_TEST_CASE("normal, lit and edge importance as published, at their limit
     CHECK(lit_importance(T(0), T(0)) == T(0));
     CHECK(lit_importance(T(-0.5), T(-2)) == T(1));
     CHECK(lit_importance(nan, T(-2)) == T(0));
-    CHECK(edge_importance(true, T(0.001)) == T(1));
-    CHECK(edge_importance(false, T(0.001)) == T(0.001));
+    CHECK(edge_importance(T(1), T(0.001)) == T(1));
+    CHECK(edge_importance(T(0), T(0.001)) == T(0.001));
+    CHECK(edge_importance(T(0.5), T(0.5)) == T(0.75));
+}
+
+TEMPLATE_TEST_CASE("shadow_end is across the gradient of all 512 sets of nine answers", "", float,
+                   double) {
+    using T = TestType;
+    for (unsigned lit = 0; lit < 512; ++lit) {
+        CAPTURE(lit);
+        glm::vec<3, T> rows[3];
+        int gradient[2] = {0, 0};
+        for (int texel = 0; texel < 9; ++texel) {
+            const bool is_lit = (lit >> texel & 1u) != 0;
+            rows[texel / 3][texel % 3] = is_lit ? T(1) : T(0);
+            gradient[0] += is_lit ? texel % 3 - 1 : 0;
+            gradient[1] += is_lit ? texel / 3 - 1 : 0;
+        }
+        const glm::vec<2, T> end = shadow_end(rows[0], rows[1], rows[2]);
+        const double length = std::hypot(double(gradient[0]), double(gradient[1]));
+        const bool agree = lit == 0 || lit == 511;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double expected = length > 0.0 ? std::abs(gradient[axis]) / length
+                                    : agree      ? 0.0
+                                                 : std::sqrt(0.5);
+            // a root and a quotient, half an ulp of a number below 1 each
+            CHECK(std::abs(double(end[axis]) - expected) <= 2 * roundoff<T>());
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("shadow_end is finite and in [0, 1] for any answers, NaN and infinity too", "",
+                   float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const T odd[] = {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(),
+                         -std::numeric_limits<T>::infinity(), std::numeric_limits<T>::max(),
+                         std::numeric_limits<T>::denorm_min()};
+        glm::vec<3, T> rows[3];
+        for (int texel = 0; texel < 9; ++texel) {
+            rows[texel / 3][texel % 3] =
+                d.between(0, 9) == 0 ? odd[d.between(0, 4)] : static_cast<T>(d.between(0.0, 1.0));
+        }
+        const glm::vec<2, T> end = shadow_end(rows[0], rows[1], rows[2]);
+        RC_ASSERT(end.x >= T(0) && end.x <= T(1) && end.y >= T(0) && end.y <= T(1));
+    }));
 }
 
 TEMPLATE_TEST_CASE("combinations: any subset, by product and by sum, gated by light and view", "",
@@ -152,7 +197,7 @@ TEMPLATE_TEST_CASE("combinations: any subset, by product and by sum, gated by li
         point.eye_distance = static_cast<T>(d.between(0.1, 80.0));
         point.view_cosine = static_cast<T>(d.between(-1.0, 1.0));
         point.light_cosine = static_cast<T>(d.between(-1.0, 1.0));
-        point.edge = d.coin();
+        point.edge = static_cast<T>(d.coin() ? d.between(0.0, 1.0) : double(d.between(0, 1)));
 
         double product = 1.0;
         double sum = 0.0;
@@ -160,7 +205,8 @@ TEMPLATE_TEST_CASE("combinations: any subset, by product and by sum, gated by li
             {{options.distance,
               double(distance_importance(point.eye_distance, options.near_distance,
                                          options.inverse_far))},
-             {options.edge, point.edge ? 1.0 : double(options.alpha)},
+             {options.edge,
+              double(point.edge) + (1.0 - double(point.edge)) * double(options.alpha)},
              {options.normal, 1.0 + 2.0 * std::max(0.0, double(point.view_cosine))}}};
         bool used = false;
         for (const auto& [on, value] : functions) {
@@ -170,8 +216,8 @@ TEMPLATE_TEST_CASE("combinations: any subset, by product and by sum, gated by li
         }
         const double expected = options.add && used ? sum : product;
         const double lit = point.light_cosine > T(0) ? 1.0 : 0.0;
-        // at most 2 · 1 · 3: three products or sums, and one product in a factor
-        const double error = 6.0 * 5.0 * roundoff<T>();
+        // at most 2 · 1 · 3: three products or sums, and at most three operations in a factor
+        const double error = 6.0 * 8.0 * roundoff<T>();
         RC_ASSERT(std::abs(double(view_importance(point, options)) - lit * expected) <= error);
         options.least_cosine = T(-2);
         RC_ASSERT(std::abs(double(view_importance(point, options)) - expected) <= error);

@@ -7,9 +7,11 @@
 #include <glm/mat4x4.hpp>
 #include <rapidcheck.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -51,6 +53,98 @@ template <typename T> owned_image<T> any_depths(dice& d, int width, int height) 
 }
 
 } // namespace
+
+TEMPLATE_TEST_CASE("shadow_end_at asks the nine texels around a point, each at its centre", "",
+                   float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        owned_image<T> depths = any_depths<T>(d, d.size(20), d.size(20));
+        const glm::vec<3, T> p(static_cast<T>(d.between(-0.1, 1.1)),
+                               static_cast<T>(d.between(-0.1, 1.1)),
+                               static_cast<T>(d.between(0.0, 1.0)));
+        const glm::vec<3, T> normal(static_cast<T>(d.between(-1.0, 1.0)),
+                                    static_cast<T>(d.between(-1.0, 1.0)),
+                                    static_cast<T>(d.between(0.2, 1.0)));
+        const T bias = T(1) / T(1024);
+        const int size[2] = {depths.width, depths.height};
+        int at[2];
+        for (int axis = 0; axis < 2; ++axis) {
+            const T along = std::clamp(p[axis], T(0), T(1)) * static_cast<T>(size[axis]);
+            at[axis] = std::min(static_cast<int>(along), size[axis] - 1);
+        }
+        glm::vec<3, T> lit[3];
+        for (int y = 0; y < 3; ++y) {
+            for (int x = 0; x < 3; ++x) {
+                const int i = std::clamp(at[0] + x - 1, 0, size[0] - 1);
+                const int j = std::clamp(at[1] + y - 1, 0, size[1] - 1);
+                const long double across =
+                    static_cast<long double>(normal.x) * ((i + 0.5L) / size[0] - p.x) +
+                    static_cast<long double>(normal.y) * ((j + 0.5L) / size[1] - p.y);
+                const long double step = -across / static_cast<long double>(normal.z);
+                const long double plane =
+                    static_cast<long double>(p.z) + (std::abs(step) <= 1.0L ? step : 0.0L);
+                const long double before = plane - static_cast<long double>(bias) -
+                                           static_cast<long double>(depths.at(i, j));
+                // steps of up to five, of a quotient by 1/5 at least: a dozen roundings
+                RC_PRE(std::abs(before) > 100 * roundoff<T>());
+                RC_PRE(std::abs(std::abs(step) - 1.0L) > 100 * roundoff<T>());
+                lit[y][x] = before > 0.0L ? T(0) : T(1);
+            }
+        }
+        RC_ASSERT(shadow_end_at(depths.view(), p, normal, bias) ==
+                  shadow_end(lit[0], lit[1], lit[2]));
+    }));
+}
+
+TEMPLATE_TEST_CASE("shadow_end_at finds the end of a shadow, not the edge of what throws it", "",
+                   float, double) {
+    using T = TestType;
+    owned_image<T> depths(16, 16, T(0.75)); // a wall before the right half of a floor
+    for (int j = 0; j < 16; ++j) {
+        for (int i = 8; i < 16; ++i) {
+            depths.at(i, j) = T(0.25);
+        }
+    }
+    const glm::vec<3, T> up(T(0), T(0), T(1));
+    const T bias = T(0.01);
+    const auto at = [&](double u, T depth) {
+        return shadow_end_at(depths.view(), glm::vec<3, T>(static_cast<T>(u), T(0.5), depth), up,
+                             bias);
+    };
+    const glm::vec<2, T> none(T(0));
+    const glm::vec<2, T> across_u(T(1), T(0));
+    CHECK(at(7.9 / 16, T(0.75)) == across_u); // on the floor, beside the wall
+    CHECK(at(8.1 / 16, T(0.75)) == across_u); // behind it
+    CHECK(at(8.1 / 16, T(0.25)) == none);     // on the wall's own edge
+    CHECK(at(6.5 / 16, T(0.75)) == none);     // a texel and a half away
+    CHECK(at(9.5 / 16, T(0.75)) == none);
+}
+
+TEMPLATE_TEST_CASE("shadow_end_at is total", "", float, double) {
+    using T = TestType;
+    const T nan = std::numeric_limits<T>::quiet_NaN();
+    const T inf = std::numeric_limits<T>::infinity();
+    owned_image<T> depths(2, 1, T(0.5));
+    depths.at(1, 0) = nan;
+    const glm::vec<2, T> none(T(0));
+    const glm::vec<3, T> up(T(0), T(0), T(1));
+    for (const T bad : {nan, inf, -inf}) {
+        CHECK(shadow_end_at(depths.view(), glm::vec<3, T>(bad, T(0.5), T(1)), up, T(0)) == none);
+        CHECK(shadow_end_at(depths.view(), glm::vec<3, T>(T(0.5), bad, T(1)), up, T(0)) == none);
+        // the depth, the surface and the bias: any answers, but finite ones
+        const glm::vec<3, T> p(T(0.5), T(0.5), T(0.75));
+        for (const glm::vec<2, T> end :
+             {shadow_end_at(depths.view(), glm::vec<3, T>(T(0.5), T(0.5), bad), up, T(0)),
+              shadow_end_at(depths.view(), p, glm::vec<3, T>(bad), T(0)),
+              shadow_end_at(depths.view(), p, up, bad)}) {
+            CHECK((end.x >= T(0) && end.x <= T(1) && end.y >= T(0) && end.y <= T(1)));
+        }
+    }
+    image_view<T> too_large{depths.texels, 3, 1};
+    CHECK(shadow_end_at(too_large, glm::vec<3, T>(T(0.5)), up, T(0)) == none);
+    CHECK(shadow_end_at(image_view<T>{}, glm::vec<3, T>(T(0.5)), up, T(0)) == none);
+}
 
 TEMPLATE_TEST_CASE("mark_depth_edges marks what differs from one of the eight neighbours", "",
                    float, double) {

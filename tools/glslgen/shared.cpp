@@ -67,11 +67,12 @@ template float warpshadow::desired_view_importance<float>(vec4, float, float);
 template float warpshadow::depth_importance<float>(float, float, float);
 template float warpshadow::distance_importance<float>(float, float, float);
 template bool warpshadow::depth_edge<float>(float, vec4, vec4, float);
-template float warpshadow::edge_importance<float>(bool, float);
+template vec2 warpshadow::shadow_end<float>(vec3, vec3, vec3);
+template float warpshadow::edge_importance<float>(float, float);
 template float warpshadow::normal_importance<float>(float, float);
 template float warpshadow::lit_importance<float>(float, float);
 template float warpshadow::view_importance<float>(const seen&, const functions&);
-template float warpshadow::forward_importance<float>(vec4, float, float, bool, float,
+template float warpshadow::forward_importance<float>(vec4, float, float, float, float,
                                                      const functions&);
 
 // warp
