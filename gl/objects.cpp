@@ -268,6 +268,18 @@ void texture::bind(GLuint unit) const {
     glBindTexture(target(), id());
 }
 
+buffer_texture::buffer_texture(const buffer& source, GLenum internal_format)
+    : handle_(generate(glGenTextures)) {
+    bind(spare_unit);
+    glTexBuffer(GL_TEXTURE_BUFFER, internal_format, source.id());
+    check("glTexBuffer");
+}
+
+void buffer_texture::bind(GLuint unit) const {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_BUFFER, id());
+}
+
 void texture::bind_image(GLuint unit, GLenum access) const {
     glBindImageTexture(unit, id(), 0, layers_ > 0 ? GL_TRUE : GL_FALSE, 0, access, format_);
 }

@@ -129,6 +129,22 @@ class texture {
     int layers_ = 0;
 };
 
+/// A buffer as a texture of one row, for `samplerBuffer` and its like: vectors of invocations fetch
+/// its texels faster than they load from storage, on processors at least.
+class buffer_texture {
+  public:
+    buffer_texture() = default;
+    /// @param source          outlives what reads the texture
+    /// @param internal_format of a texel, such as GL_RGBA32F
+    buffer_texture(const buffer& source, GLenum internal_format);
+
+    [[nodiscard]] GLuint id() const { return handle_.id(); }
+    void bind(GLuint unit) const;
+
+  private:
+    handle<detail::delete_texture> handle_;
+};
+
 /// A framebuffer over textures that outlive it. Textures may be moved afterwards.
 class framebuffer {
   public:

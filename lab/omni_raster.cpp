@@ -72,7 +72,7 @@ void hemisphere_raster::draw(map_resources& maps, std::size_t side, double far_d
         lists_.draw();
     });
     if (count) {
-        lists_.count();
+        lists_.count(lists_.counts());
     }
 }
 

@@ -43,7 +43,10 @@ enum unit : GLuint {
     unit_rows = 2,
     unit_columns = 3,
     unit_centres = 4,
-    unit_map = 5
+    unit_map = 5,
+    unit_positions = 6,
+    unit_indices = 7,
+    unit_face_normals = 8
 };
 enum binding : GLuint { on_light = 4, on_desired_view = 5 };
 
@@ -112,7 +115,9 @@ std::size_t map_resources::bytes() const {
 passes::passes(const scene& scene_to_show, glm::ivec2 view_size)
     : world_(scene_to_show), view_(view_size), library_{gl::glsl_files(), lab_shaders()},
       mesh_(world_.positions, world_.triangles),
-      normals_(std::span<const glm::vec4>(face_normals())), mask_(GL_R8UI, view_.x, view_.y),
+      normals_(std::span<const glm::vec4>(face_normals())),
+      positions_view_(mesh_.positions(), GL_RGB32F), indices_view_(mesh_.indices(), GL_RGB32UI),
+      normals_view_(normals_, GL_RGBA32F), mask_(GL_R8UI, view_.x, view_.y),
       light_buffer_(sizeof(light_block) + most_maps * sizeof(map_block), nullptr, GL_DYNAMIC_DRAW),
       depths_(4 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW), watch_(gl::best_timing()) {
     draw_g_buffer_ = link("g_buffer.vert", "g_buffer.frag");
@@ -134,6 +139,12 @@ void passes::set_units(const gl::program& program) {
     program.set("g_position", static_cast<int>(unit_position));
     program.set("g_normal", static_cast<int>(unit_normal));
     program.set("shadow_map", static_cast<int>(unit_map));
+}
+
+void passes::bind_triangles() const {
+    positions_view_.bind(unit_positions);
+    indices_view_.bind(unit_indices);
+    normals_view_.bind(unit_face_normals);
 }
 
 void passes::bind_depth(const map_resources& maps) {

@@ -122,6 +122,8 @@ class passes {
     static void set_units(const gl::program& program);
     static void bind_depth(const map_resources& maps);
     static void bind_tables(const map_resources& maps, std::size_t index);
+    /// Makes the triangles of the scene those of shaders/triangle_corners.glsl.
+    void bind_triangles() const;
     [[nodiscard]] const gl::mesh& mesh() const { return mesh_; }
     [[nodiscard]] const gl::buffer& face_normal_buffer() const { return normals_; }
     [[nodiscard]] gl::texture& mask() { return mask_; }
@@ -140,6 +142,7 @@ class passes {
     gl::shader_library library_;
     gl::mesh mesh_;
     gl::buffer normals_;
+    gl::buffer_texture positions_view_, indices_view_, normals_view_;
     gl::texture mask_;
     gl::buffer light_buffer_, depths_;
     gl::texture histogram_;

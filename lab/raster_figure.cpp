@@ -180,7 +180,8 @@ std::string raster_figure_section(const results& all, const figure_pictures& see
         all, seen,
         {"figure 7 of Rosen 2012",
          "The same part of the picture and of the map, drawn in every way of --raster, where those "
-         "that cut edges or draw hulls differ most. Red: pixels whose shadow is wrong, and texels "
+         "that do something about bent edges differ most. Red: pixels whose shadow is wrong, and "
+         "texels "
          "whose depth is not that of the ideal map. Shares are of the whole picture and the whole "
          "map.",
          256, [](const figure_record::cell& cell, const run_record& run) {

@@ -42,6 +42,10 @@ void triangle_lists::begin() {
     waiting_[0].bind_base(GL_SHADER_STORAGE_BUFFER, on_waiting);
 }
 
+triangle_counts triangle_lists::counts() const {
+    return counters_.read<triangle_counts>().front();
+}
+
 void triangle_lists::cut(const gl::program& cut, int rounds) {
     for (int round = 0; round < rounds; ++round) {
         const std::size_t source = static_cast<std::size_t>(round % 2);
@@ -69,10 +73,6 @@ void triangle_lists::draw() {
     counters_.bind(GL_DRAW_INDIRECT_BUFFER);
     glDrawArraysIndirect(GL_TRIANGLES, nullptr);
     gl::wait_for_writes();
-}
-
-void triangle_lists::count() {
-    counted_.push_back(counters_.read<triangle_counts>().front());
 }
 
 void triangle_lists::forget_counts() {

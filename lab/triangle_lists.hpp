@@ -21,6 +21,9 @@ struct triangle_counts {
     std::uint32_t lost = 0;
     std::uint32_t crowded = 0;
     std::uint32_t uncut = 0;
+    std::uint32_t crossing = 0;
+    std::uint32_t pairs = 0;
+    std::array<std::uint32_t, 2> larger{};
 };
 
 /// Pieces that wait to be cut, pieces that are ready, and how many there are of each.
@@ -34,6 +37,8 @@ class triangle_lists {
 
     /// Empties the lists and binds them for the pass that fills them.
     void begin();
+    /// What the passes since then counted; waits for them.
+    [[nodiscard]] triangle_counts counts() const;
     /// Halves edges, one round after the other, until nothing waits or the rounds are over.
     ///
     /// @param cut reads the list `list`, writes the other, and draws all in the `last_round`
@@ -41,8 +46,8 @@ class triangle_lists {
     /// Draws what is ready with the program in use.
     void draw();
 
-    /// Reads back how many there were, for `grow`.
-    void count();
+    /// Keeps how many there were, for `grow`.
+    void count(const triangle_counts& counts) { counted_.push_back(counts); }
     void forget_counts();
     /// Of the maps drawn since they were last forgotten.
     [[nodiscard]] const std::vector<triangle_counts>& counted() const { return counted_; }

@@ -13,12 +13,6 @@ namespace lab {
 
 namespace {
 
-/// Hulls: edges above this share of the map are cut without a look at where they go.
-constexpr double longest_walk = 0.125;
-/// What a hull may cover in vain before it is cut: texels, and a share of what it holds.
-constexpr double excess_texels = 64.0;
-constexpr double excess_share = 0.5;
-
 /// Halvings of an edge that are enough for all: 2^-20 of the map is less than its rounding.
 constexpr int most_halvings = 20;
 
@@ -26,7 +20,7 @@ constexpr std::size_t source_bytes = 48;
 constexpr std::size_t piece_bytes = 32;
 
 /// Buffer bindings of the shaders.
-enum binding : GLuint { on_sides = 5, on_source = 10 };
+enum binding : GLuint { on_sides = 5, on_source = 10, on_crossing = 12 };
 
 struct kind_name {
     std::string_view name;
@@ -78,16 +72,10 @@ std::string raster_name(const raster_choice& choice) {
 }
 
 warped_raster::warped_raster(passes& gpu)
-    : gpu_(gpu), lists_(piece_bytes), sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
-    const std::vector<std::string> names{
-        "RASTER_RULE " + std::to_string(static_cast<int>(raster_kind::rule)),
-        "RASTER_BOUND " + std::to_string(static_cast<int>(raster_kind::bound)),
-        "RASTER_EXACT " + std::to_string(static_cast<int>(raster_kind::exact))};
-    set_up_ = gpu_.compute("triangle_setup.comp", names);
-    cut_ = gpu_.compute("triangle_cut.comp", names);
+    : gpu_(gpu), lists_(piece_bytes), texels_(gpu),
+      sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
     draw_interpolated_ = gpu_.link("shadow_warped.vert", "empty.frag", {"INTERPOLATED"});
     draw_fragment_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag");
-    draw_exact_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag", {"COVERAGE"});
     predict_ = gpu_.compute("predict_gain.comp");
     passes::set_units(predict_);
     for (std::size_t i = 0; i < weaken_.size(); ++i) {
@@ -97,23 +85,61 @@ warped_raster::warped_raster(passes& gpu)
     const std::size_t triangles = gpu_.world().triangles.size();
     sources_ =
         gl::buffer((triangles + triangles / 2 + 1024) * source_bytes, nullptr, GL_DYNAMIC_COPY);
+    crossing_ = gl::buffer(std::max<std::size_t>(triangles, 1) * sizeof(std::uint32_t), nullptr,
+                           GL_DYNAMIC_COPY);
     lists_.make_room_for(triangles);
 }
 
-void warped_raster::prepare(std::size_t index, int size, const raster_choice& choice) {
-    const double texels = size;
-    const double longest = choice.kind == raster_kind::rule    ? choice.value / 100.0
-                           : choice.kind == raster_kind::exact ? longest_walk
-                                                               : 2.0;
-    for (const gl::program* program : {&set_up_, &cut_}) {
-        program->set("map_index", static_cast<int>(index));
-        program->set("raster", static_cast<int>(choice.kind));
-        program->set("map_texels", static_cast<float>(texels));
-        program->set("longest", static_cast<float>(longest));
-        program->set("deviation", static_cast<float>(choice.value / texels));
-        program->set("excess_floor", static_cast<float>(excess_texels / (texels * texels)));
-        program->set("excess_share", static_cast<float>(excess_share));
+const warped_raster::steps& warped_raster::steps_for(raster_kind kind) {
+    std::optional<steps>& found = steps_[static_cast<std::size_t>(kind)];
+    if (!found) {
+        const auto program = [&](const char* file, std::vector<std::string> defines) {
+            const auto name = [&](const char* text, raster_kind which) {
+                defines.push_back(text + std::to_string(static_cast<int>(which)));
+            };
+            name("RASTER ", kind);
+            name("RASTER_RULE ", raster_kind::rule);
+            name("RASTER_BOUND ", raster_kind::bound);
+            return gpu_.compute(file, defines);
+        };
+        found = {program("triangle_setup.comp", {}),
+                 program("triangle_setup.comp", {"LISTED", "CLIPPED"}),
+                 program("triangle_cut.comp", {})};
     }
+    return *found;
+}
+
+void warped_raster::prepare(const steps& use, std::size_t index, int size,
+                            const raster_choice& choice) {
+    const double longest = choice.kind == raster_kind::rule ? choice.value / 100.0 : 2.0;
+    for (const gl::program* program : {&use.within, &use.crossing, &use.cut}) {
+        program->set("map_index", static_cast<int>(index));
+        program->set("longest", static_cast<float>(longest));
+        program->set("deviation", static_cast<float>(choice.value / size));
+    }
+}
+
+void warped_raster::set_up(const steps& use) {
+    lists_.begin();
+    gpu_.bind_triangles();
+    sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
+    crossing_.bind_base(GL_SHADER_STORAGE_BUFFER, on_crossing);
+    const std::size_t triangles = gpu_.world().triangles.size();
+    use.within.set("triangle_count", static_cast<unsigned>(triangles));
+    use.within.dispatch_over(triangles);
+    gl::wait_for_writes();
+    const std::uint32_t crossing = lists_.counts().crossing;
+    if (crossing > 0) {
+        use.crossing.set("triangle_count", crossing);
+        use.crossing.dispatch_over(crossing);
+        gl::wait_for_writes();
+    }
+}
+
+void warped_raster::draw_exact(map_resources& maps, std::size_t index) {
+    gpu_.timed_pass("set up triangles", [&] { texels_.sort(maps, index); });
+    gpu_.timed_pass("cut triangles", [&] { texels_.spread(maps); });
+    gpu_.timed_pass("shadow map", [&] { texels_.draw(maps, index); });
 }
 
 double warped_raster::weaken(map_resources& maps, std::size_t index) {
@@ -156,34 +182,34 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
         }
         return;
     }
+    by_texel_ = choice.kind == raster_kind::exact;
+    if (by_texel_) {
+        draw_exact(maps, index);
+        if (count) {
+            lists_.count(texels_.counts());
+        }
+        return;
+    }
+    const steps& use = steps_for(choice.kind);
     gpu_.timed_pass("set up triangles", [&] {
-        prepare(index, maps.size, choice);
-        lists_.begin();
-        gpu_.mesh().positions().bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-        gpu_.mesh().indices().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
-        gpu_.face_normal_buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
-        sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
-        const std::size_t triangles = gpu_.world().triangles.size();
-        set_up_.set("triangle_count", static_cast<unsigned>(triangles));
-        set_up_.dispatch_over(triangles);
-        gl::wait_for_writes();
+        prepare(use, index, maps.size, choice);
+        set_up(use);
     });
     gpu_.timed_pass("cut triangles", [&] {
         // three halvings, one of each edge, make a triangle half as large; mostly few are needed
-        lists_.cut(cut_, choice.kind < raster_kind::rule ? 0 : 3 * most_halvings);
+        lists_.cut(use.cut, choice.kind < raster_kind::rule ? 0 : 3 * most_halvings);
     });
     gpu_.timed_pass("shadow map", [&] {
         maps.targets[index].bind();
         glClear(GL_DEPTH_BUFFER_BIT);
-        const gl::program& draw = choice.kind == raster_kind::none    ? draw_interpolated_
-                                  : choice.kind == raster_kind::exact ? draw_exact_
-                                                                      : draw_fragment_;
+        const gl::program& draw =
+            choice.kind == raster_kind::none ? draw_interpolated_ : draw_fragment_;
         draw.use();
         sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
         lists_.draw();
     });
     if (count) {
-        lists_.count();
+        lists_.count(lists_.counts());
     }
 }
 
@@ -214,21 +240,24 @@ void warped_raster::trace_map(map_resources& maps, std::size_t index, const ray_
 }
 
 std::size_t warped_raster::list_bytes() const {
+    std::size_t most = 0;
     std::size_t sources = 0;
     for (const triangle_counts& each : lists_.counted()) {
+        most = std::max(most, texels_.bytes(each));
         sources = std::max<std::size_t>(sources, each.sources);
     }
-    return sources * source_bytes + lists_.bytes();
+    return by_texel_ ? most : sources * source_bytes + lists_.bytes();
 }
 
 bool warped_raster::grow_lists() {
-    // what was lost is a source or a piece: both lists grow
+    // what was lost is a source, a piece or a pair: all lists grow
     const bool lost = lists_.lost_some();
     if (!lists_.grow()) {
         return false;
     }
     if (lost) {
         sources_ = gl::buffer(2 * sources_.bytes(), nullptr, GL_DYNAMIC_COPY);
+        texels_.grow();
     }
     return true;
 }

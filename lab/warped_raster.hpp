@@ -2,11 +2,13 @@
 #pragma once
 
 #include "lab/passes.hpp"
+#include "lab/texel_raster.hpp"
 #include "lab/triangle_lists.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,13 +17,13 @@ namespace lab {
 
 class ray_tracer;
 
-/// What is done about straight lines that the warp bends; mirrored in shaders/triangles.glsl.
+/// What is done about straight lines that the warp bends.
 enum class raster_kind {
     none = 0,     ///< warped corners, everything between interpolated
     fragment = 1, ///< the same, with the depth of the unwarped place per fragment
     rule = 2,     ///< and edges cut down to a share of the map (Rosen 2012, Milet et al. 2015)
     bound = 3,    ///< and edges cut until they depart by no more than is allowed
-    exact = 4,    ///< hulls of the curved triangles; depth and coverage per fragment
+    exact = 4,    ///< texel by texel: depth and coverage of the unwarped place
     ideal = 5     ///< no rasteriser: a ray per texel
 };
 
@@ -63,14 +65,27 @@ class warped_raster {
     [[nodiscard]] float mean_side() const { return mean_side_; }
 
   private:
-    void prepare(std::size_t index, int size, const raster_choice& choice);
+    /// What turns the scene into triangles for the rasteriser, one way of it.
+    struct steps {
+        gl::program within;   ///< sets up triangles within the bounds of the map
+        gl::program crossing; ///< and those that cross them
+        gl::program cut;
+    };
+
+    const steps& steps_for(raster_kind kind);
+    void prepare(const steps& use, std::size_t index, int size, const raster_choice& choice);
+    void set_up(const steps& use);
+    void draw_exact(map_resources& maps, std::size_t index);
     void trace_map(map_resources& maps, std::size_t index, const ray_tracer& rays);
 
     passes& gpu_;
     triangle_lists lists_;
-    gl::buffer sources_, sides_;
-    gl::program set_up_, cut_, draw_interpolated_, draw_fragment_, draw_exact_, predict_;
+    texel_raster texels_;
+    gl::buffer sources_, sides_, crossing_;
+    std::array<std::optional<steps>, 4> steps_; ///< by kind, made when first asked for
+    gl::program draw_interpolated_, draw_fragment_, predict_;
     std::array<gl::program, 2> weaken_; ///< by format of the tables
+    bool by_texel_ = false;             ///< the last map
     float mean_side_ = 1.0f;
 };
 

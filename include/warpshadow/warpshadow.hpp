@@ -39,4 +39,5 @@
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warp_points.hpp>
 #include <warpshadow/warp_strength.hpp>
+#include <warpshadow/warped_box.hpp>
 #include <warpshadow/warped_hull.hpp>

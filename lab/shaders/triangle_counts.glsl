@@ -10,4 +10,7 @@ layout(std430, binding = 6) buffer triangle_counts
     uint lost;           // triangles for which there was no room
     uint crowded;        // pieces that could not wait for want of room
     uint uncut;          // pieces drawn although an edge asked for another cut
+    uint crossing;       // triangles that cross the bounds of the map
+    uint pairs;          // of triangle and block of texels
+    uint larger[2];      // triangles too large to be drawn by the pass that sorts, after either run
 };

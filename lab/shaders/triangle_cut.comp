@@ -37,16 +37,9 @@ void main()
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
         waiting_piece t = waiting_list[i];
-        // hulls need not agree from triangle to triangle: their pieces are halved twice at once
-        int parts = raster == RASTER_EXACT ? 4 : 2;
         // one call in a loop: the compiler copies what it calls
-        for (int part = 0; part < parts; ++part) {
-            waiting_piece piece = half_of(t, (part & 1) != 0);
-            if (parts == 4) {
-                piece.edge = longest_edge(edge_lengths(piece));
-                piece = half_of(piece, (part & 2) != 0);
-            }
-            put(piece);
+        for (int part = 0; part < 2; ++part) {
+            put(half_of(t, part == 1));
         }
     }
 }

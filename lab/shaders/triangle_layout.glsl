@@ -24,3 +24,6 @@ struct ready_piece {
     uint source;
     uint padding;
 };
+
+// Texels along a side of a block: what is large is drawn block by block.
+const int block_side = 8;

@@ -1,21 +1,50 @@
 #version 430 core
-// Shadow pass, first step: projects, clips and sorts the scene's triangles.
+// Shadow pass: projects triangles, clips them and sorts what is left; with TEXELS, only writes it. LISTED: those of a list, and
+// not all. CLIPPED: those that cross the bounds of the map, which else are put on the list.
 layout(local_size_x = 64) in;
-#include "lab/light.glsl"
+#include "lab/triangle_corners.glsl"
+#include "lab/triangle_counts.glsl"
+#include "lab/triangle_layout.glsl"
+#ifndef TEXELS
 #include "lab/triangles.glsl"
-layout(std430, binding = 0) readonly buffer positions { float position[]; };
-layout(std430, binding = 1) readonly buffer indices { uint index[]; };
-layout(std430, binding = 2) readonly buffer face_normals { vec4 face_normal[]; };
 layout(std430, binding = 8) writeonly buffer waiting_triangles { waiting_piece waiting_list[]; };
+#endif
 layout(std430, binding = 10) writeonly buffer source_triangles { source_triangle source[]; };
+#ifdef LISTED
+layout(std430, binding = 12) readonly buffer listed_triangles { uint listed[]; };
+#else
+layout(std430, binding = 12) writeonly buffer crossing_triangles { uint crossing_list[]; };
+#endif
 uniform uint triangle_count;
 
-vec3 vertex(uint i)
+void put(source_triangle t)
 {
-    return vec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
+    if (is_thin(t.p0, t.p1, t.p2)) {
+        return;
+    }
+    uint slot = atomicAdd(sources, 1u);
+    if (slot >= uint(source.length())) {
+        atomicAdd(lost, 1u);
+        return;
+    }
+    source[slot] = t;
+#ifdef TEXELS
+    atomicAdd(vertex_count, 3u);
+#else
+    waiting_piece piece = waiting_piece(t.p0, t.p1, t.p2, slot, 0);
+    if (asks_for_cut(piece, false)) {
+        uint place = atomicAdd(waiting[0], 1u);
+        if (place < uint(waiting_list.length())) {
+            waiting_list[place] = piece;
+        } else {
+            atomicAdd(crowded, 1u);
+            asks_for_cut(piece, true);
+        }
+    }
+#endif
 }
 
-const float thinnest = 2.4e-7; // four roundings of a map coordinate
+#ifdef CLIPPED
 const int capacity = 9; // a triangle cut by six planes
 vec4 polygon[capacity];
 int corners;
@@ -47,20 +76,14 @@ void clip(vec4 plane)
     }
 }
 
-void sort(uint id)
+void set_up(uint id)
 {
     bvec3 below[3], above[3];
     for (int i = 0; i < 3; ++i) {
-        vec4 c = light_matrix * vec4(vertex(index[3u * id + uint(i)]), 1.0);
+        vec4 c = in_clip_space(corner_in_world(id, i));
         polygon[i] = c;
         below[i] = lessThan(c.xyz, vec3(-c.w));
         above[i] = greaterThan(c.xyz, vec3(c.w));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        if ((below[0][axis] && below[1][axis] && below[2][axis]) ||
-            (above[0][axis] && above[1][axis] && above[2][axis])) {
-            return;
-        }
     }
     corners = 3;
     // the near plane first: it leaves w > 0
@@ -87,14 +110,11 @@ void sort(uint id)
     float depth_lo = 1.0;
     float depth_hi = 0.0;
     for (int i = 0; i < corners; ++i) {
-        map[i] = polygon[i].xyz / polygon[i].w * 0.5 + 0.5;
+        map[i] = in_map(polygon[i]);
         depth_lo = min(depth_lo, map[i].z);
         depth_hi = max(depth_hi, map[i].z);
     }
-    // the plane of the triangle in clip space; its depth as a function of the map
-    vec3 normal = face_normal[id].xyz;
-    vec3 corner = vertex(index[3u * id]);
-    vec4 plane = light_normal * vec4(normal, -dot(normal, corner));
+    vec4 plane = clip_plane(id, corner_in_world(id, 0));
     if (plane.z == 0.0) {
         return; // seen edge-on: covers nothing
     }
@@ -103,40 +123,50 @@ void sort(uint id)
     t.depth_slope = -plane.xy / plane.z;
     t.depth_lo = depth_lo;
     t.depth_hi = depth_hi;
+    t.p0 = map[0].xy;
+    t.depth0 = map[0].z;
     for (int i = 1; i + 1 < corners; ++i) {
-        t.p0 = map[0].xy;
         t.p1 = map[i].xy;
         t.p2 = map[i + 1].xy;
-        t.depth0 = map[0].z;
-        // as thin as the rounding of its corners: seen edge-on, it covers no texel
-        vec2 a = t.p1 - t.p0, b = t.p2 - t.p0, c = t.p2 - t.p1;
-        float height = abs(a.x * b.y - a.y * b.x) / max(length(a), max(length(b), length(c)));
-        if (!(height > thinnest)) {
-            continue;
-        }
-        uint slot = atomicAdd(sources, 1u);
-        if (slot >= uint(source.length())) {
-            atomicAdd(lost, 1u);
-            continue;
-        }
-        source[slot] = t;
-        waiting_piece piece = waiting_piece(t.p0, t.p1, t.p2, slot, 0);
-        if (asks_for_cut(piece, false)) {
-            uint place = atomicAdd(waiting[0], 1u);
-            if (place < uint(waiting_list.length())) {
-                waiting_list[place] = piece;
-            } else {
-                atomicAdd(crowded, 1u);
-                asks_for_cut(piece, true);
-            }
-        }
+        put(t);
     }
 }
+#else
+void set_up(uint id)
+{
+    vec3 corner = corner_in_world(id, 0);
+    vec4 c0 = in_clip_space(corner);
+    vec4 c1 = in_clip_space(corner_in_world(id, 1));
+    vec4 c2 = in_clip_space(corner_in_world(id, 2));
+#ifndef LISTED
+    int place = place_of(c0, c1, c2);
+    if (place == crossing_bounds) {
+        crossing_list[atomicAdd(crossing, 1u)] = id;
+    }
+    if (place != within_bounds) {
+        return;
+    }
+#endif
+    vec3 m0 = in_map(c0);
+    vec3 m1 = in_map(c1);
+    vec3 m2 = in_map(c2);
+    vec4 plane = clip_plane(id, corner);
+    if (plane.z == 0.0) {
+        return; // seen edge-on: covers nothing
+    }
+    put(source_triangle(m0.xy, m1.xy, m2.xy, -plane.xy / plane.z, m0.z,
+                        min(1.0, min(m0.z, min(m1.z, m2.z))), max(m0.z, max(m1.z, m2.z)), 0u));
+}
+#endif
 
 void main()
 {
-    for (uint id = gl_GlobalInvocationID.x; id < triangle_count;
-         id += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
-        sort(id);
+    for (uint i = gl_GlobalInvocationID.x; i < triangle_count;
+         i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+#ifdef LISTED
+        set_up(listed[i]);
+#else
+        set_up(i);
+#endif
     }
 }

@@ -174,7 +174,7 @@ TEST_CASE("maps with tables hold what an ideal map holds within what was asked f
     CHECK(std::count_if(maps.ideal.begin(), maps.ideal.end(), [](float d) { return d < 0.99f; }) >
           static_cast<std::ptrdiff_t>(texels / 2));
 
-    // hulls: rounding alone
+    // texel by texel: rounding alone
     const std::vector<float> exact = maps.draw({lab::raster_kind::exact, 0.0});
     CHECK(maps.deviation(exact, {0.005, 0.01, 0.02}) <= 0.02);
 
@@ -192,7 +192,7 @@ TEST_CASE("edges cut by the bound are off by no more than it") {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         drawn_maps maps(seed, 1);
         maps.draw({lab::raster_kind::exact, 0.0});
-        const std::size_t hulls = maps.triangles();
+        const std::size_t whole = maps.triangles();
         std::size_t pieces = 0;
         for (const double allowed : {0.25, 0.5, 1.0}) {
             CAPTURE(seed, allowed);
@@ -206,7 +206,7 @@ TEST_CASE("edges cut by the bound are off by no more than it") {
             CHECK(maps.deviation(map, radii) <= allowed + 0.02);
             pieces = std::max(pieces, maps.triangles());
         }
-        CHECK(pieces > hulls);
+        CHECK(pieces > whole);
     }
 }
 

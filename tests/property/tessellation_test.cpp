@@ -1,6 +1,6 @@
-// Properties of edge_walk.hpp, tessellation.hpp and warped_hull.hpp: no warped edge departs from
-// its chord by more than the bound, cutting by the rules keeps what was asked for, and no part of a
-// warped triangle lies outside its hull.
+// Properties of edge_walk.hpp, tessellation.hpp, warped_hull.hpp and warped_box.hpp: no warped edge
+// departs from its chord by more than the bound, cutting by the rules keeps what was asked for, and
+// no part of a warped triangle lies outside its hull.
 //
 // The oracle evaluates the stored nodes in long double, piece by piece, and shares no code with the
 // library.
@@ -9,6 +9,7 @@
 #include <warpshadow/edge_walk.hpp>
 #include <warpshadow/tessellation.hpp>
 #include <warpshadow/warp_build.hpp>
+#include <warpshadow/warped_box.hpp>
 #include <warpshadow/warped_hull.hpp>
 
 #include <catch2/catch.hpp>
@@ -369,6 +370,39 @@ TEMPLATE_TEST_CASE("no part of a warped triangle lies outside its hull", "", flo
     }));
 }
 
+TEMPLATE_TEST_CASE("no part of a warped box lies outside the box around it", "", float, double) {
+    using T = TestType;
+    REQUIRE(rc::check([] {
+        dice d = any_dice();
+        const warp_tables<T> t = any_tables<T>(d);
+        for (int i = 0; i < 4; ++i) {
+            const glm::vec<2, T> a = any_point<T>(d);
+            const glm::vec<2, T> b = d.between(0, 9) == 0 ? a : near_point(d, a, any_scale<T>(d));
+            const map_box<T> box{glm::min(a, b), glm::max(a, b)};
+            const map_box<T> warped = warp_box(t.rows.view(), t.columns.view(), box);
+            const real rounding = 64 * t.rounding();
+            real least = 1;
+            real most = 0;
+            const auto holds = [&](real2 q) {
+                RC_ASSERT(q.x >= wide(warped.lo.x) - rounding);
+                RC_ASSERT(q.x <= wide(warped.hi.x) + rounding);
+                RC_ASSERT(q.y >= wide(warped.lo.y) - rounding);
+                RC_ASSERT(q.y <= wide(warped.hi.y) + rounding);
+                least = std::min(least, q.x);
+                most = std::max(most, q.x);
+            };
+            const std::array<glm::vec<2, T>, 4> corner{box.lo, glm::vec<2, T>(box.hi.x, box.lo.y),
+                                                       box.hi, glm::vec<2, T>(box.lo.x, box.hi.y)};
+            for (std::size_t k = 0; k < 4; ++k) {
+                along_edge(t, corner[k], corner[(k + 1) % 4], 9, holds);
+            }
+            // along u nothing is given away: the sides reach both ends
+            RC_ASSERT(least <= wide(warped.lo.x) + rounding);
+            RC_ASSERT(most >= wide(warped.hi.x) - rounding);
+        }
+    }));
+}
+
 TEMPLATE_TEST_CASE("J45: linear tables are never cut, and hulls are the triangles", "", float,
                    double) {
     using T = TestType;
@@ -435,6 +469,11 @@ TEMPLATE_TEST_CASE("positions that are no numbers are clamped to the map", "", f
                 hull_of_triangle(rows, columns, p, q, glm::vec<2, T>(T(0.5), T(0.2)), T(0));
             CHECK(hull.area >= T(0));
             CHECK(hull.area <= T(4));
+            const map_box<T> box = warp_box(rows, columns, map_box<T>{p, q});
+            for (const T side : {box.lo.x, box.lo.y, box.hi.x, box.hi.y}) {
+                CHECK(side >= T(0));
+                CHECK(side <= T(1));
+            }
         }
     }
 }

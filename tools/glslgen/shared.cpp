@@ -17,6 +17,7 @@
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warp_strength.hpp>
+#include <warpshadow/warped_box.hpp>
 #include <warpshadow/warped_hull.hpp>
 
 using ivec2 = glm::vec<2, int>;
@@ -88,7 +89,9 @@ template vec2 warpshadow::unwarp_floor<float, float>(const table&, const table&,
 template mat2 warpshadow::jacobian<float, float>(const table&, const table&, vec2);
 template vec4 warpshadow::warp_clip<float, float>(const table&, const table&, vec4);
 
-// edge_walk, warped_hull, tessellation
+// edge_walk, warped_box, warped_hull, tessellation
+template warpshadow::map_box<float>
+warpshadow::warp_box<float, float>(const table&, const table&, const warpshadow::map_box<float>&);
 template float warpshadow::edge_deviation<float, float>(const table&, const table&, vec2, vec2,
                                                         float);
 template warpshadow::warped_hull<float>

@@ -1,0 +1,60 @@
+// Shadow maps with warp tables, drawn texel by texel: exact however the warp bends edges.
+#pragma once
+
+#include "gl/objects.hpp"
+#include "lab/passes.hpp"
+#include "lab/triangle_lists.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lab {
+
+/// Draws triangles without the rasteriser, whose edges are straight.
+///
+/// Which texels a triangle may cover follows from a box (warped_box.hpp); each asks whether its
+/// centre, before the warp, lies in the triangle. Small triangles are drawn as they are sorted.
+/// Large ones are spread over blocks of texels first, so that all invocations have about as much
+/// to do.
+class texel_raster {
+  public:
+    explicit texel_raster(passes& gpu);
+
+    /// Sorts the triangles of the scene and draws the small ones.
+    void sort(const map_resources& maps, std::size_t index);
+    /// Finds the blocks that the others may cover.
+    void spread(const map_resources& maps);
+    /// Draws these, and writes the map.
+    void draw(const map_resources& maps, std::size_t index);
+
+    /// What the passes of the last map counted.
+    [[nodiscard]] triangle_counts counts() const;
+    /// Makes the lists longer.
+    void grow();
+    /// Bytes that the map needed of which these are the counts.
+    [[nodiscard]] std::size_t bytes(const triangle_counts& counted) const;
+
+  private:
+    void make_room_for(int size);
+    void sort_into(std::size_t list, std::size_t index, int size, std::size_t triangles);
+    void set_up(const gl::program& program, const gl::buffer& list, std::size_t index,
+                std::uint32_t count);
+
+    passes& gpu_;
+    gl::buffer counters_;
+    std::array<gl::buffer, 2> larger_; ///< numbers of triangles that are too large for either sort
+    gl::buffer crossing_;              ///< of those that cross the bounds of the map
+    gl::buffer sources_, pairs_, depths_;
+    gl::buffer_texture depths_view_;
+    gl::texture block_bounds_;
+    std::array<gl::program, 2> sort_;
+    gl::program set_up_within_, set_up_crossing_;
+    gl::program bounds_, spread_, cover_, write_;
+    gl::vertex_array nothing_;
+    int size_ = 0; ///< of the map that there is room for
+};
+
+} // namespace lab
