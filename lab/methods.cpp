@@ -204,6 +204,7 @@ method_result renderer::run(std::string_view name, const view_request& request,
     result.bytes = maps.bytes();
     if (how.warp) {
         result.bytes += how.omni.hemispheres ? s.omni.raster().list_bytes() : s.warped.list_bytes();
+        result.bytes += s.warps.light_image_bytes(request.tables.over(how.tables));
     }
     result.maps = used_maps(chosen);
     result.angle = chosen.angle;

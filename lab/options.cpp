@@ -174,7 +174,7 @@ std::optional<options> parse_options(int argc, const char* const* argv,
     list("--light", lights, "Light, may be repeated (0)");
     list("--methods", wanted,
          "Comma-separated methods, or all "
-         "(sm,min-sm,dv,fitted,rtw-backward,notw,notw-edges,raytraced)");
+         "(sm,min-sm,dv,fitted,rtw-backward,notw,notw-hybrid,raytraced)");
     list("--map", maps, "Comma-separated sizes of the shadow map in texels (512)");
     app.add_option("--view", view, "Size of the picture, WxH (1024x768)");
     app.add_option("--repeat", repeat, "Frames that are timed after the warm-up (5)");

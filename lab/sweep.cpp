@@ -81,10 +81,11 @@ options options_of_sweep(const std::string& name) {
     options result;
     result.sweep = name;
     result.scenes = {"outdoor", "colonnade", "interior", "leaves"};
-    result.methods = {"sm",          "stable", "pssm",      "sdsm",         "min-sm", "dv",
-                      "lispsm",      "fitted", "fitted-2",  "rtw-backward", "notw",   "notw-edges",
-                      "fitted-notw", "cube6",  "cube6-efc", "cube-notw",    "dpsm",   "dpsm-pc",
-                      "dpsm-notw",   "sv",     "raytraced"};
+    result.methods = {"sm",        "stable",     "pssm",        "sdsm",        "min-sm",
+                      "dv",        "lispsm",     "fitted",      "fitted-2",    "rtw-backward",
+                      "notw",      "notw-edges", "notw-hybrid", "fitted-notw", "cube6",
+                      "cube6-efc", "cube-notw",  "dpsm",        "dpsm-pc",     "dpsm-notw",
+                      "sv",        "raytraced"};
     result.point_lights = {{"interior", "point:0.2,1.97,-0.1"}};
     result.view = {512, 384};
     result.repeat = 1;
@@ -95,14 +96,17 @@ options options_of_sweep(const std::string& name) {
         result.cameras = {"0", "1", "2"};
         result.lights = {"0", "1", "2"};
         result.maps = {256, 512, 1024, 2048, 4096};
-        result.methods.insert(result.methods.end() - 2,
-                              {"min-sm-notw", "lispsm-notw", "notw-nodv", "notw-oracle",
-                               "rtw-forward", "rtw-hybrid", "cube6-cull", "dpsm-cull"});
+        result.methods.insert(result.methods.end() - 2, {"min-sm-notw", "lispsm-notw", "notw-nodv",
+                                                         "notw-fine", "notw-oracle", "rtw-forward",
+                                                         "rtw-hybrid", "cube6-cull", "dpsm-cull"});
         result.view = {1024, 768};
         result.rounds = 5;
     }
     result.variants = variants_at(512);
-    result.moves = {"yaw", {"sm", "stable", "min-sm", "dv", "fitted", "notw"}, 512, full ? 60 : 12};
+    result.moves = {"yaw",
+                    {"sm", "stable", "min-sm", "dv", "fitted", "notw", "notw-hybrid"},
+                    512,
+                    full ? 60 : 12};
     return result;
 }
 

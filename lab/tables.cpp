@@ -124,6 +124,14 @@ void table_passes::look_from_the_light(std::size_t index, bool mark_edges) {
     light_edges_.bind(unit_light_edges);
 }
 
+std::size_t table_passes::light_image_bytes(const warp_options& options) const {
+    if (!seen_by_light_ || !looks_from_the_light(options)) {
+        return 0;
+    }
+    const bool edges = options.functions.edge && !asks_for_ends(options);
+    return seen_by_light_->depth.bytes() + (edges ? light_edges_.bytes() : 0);
+}
+
 void table_passes::splat(map_resources& maps, std::size_t index, const warp_options& options,
                          bool columns) {
     map_resources::tables& warp = maps.warps[index];

@@ -42,6 +42,10 @@ class table_passes {
                                           const warpshadow::frustum<double>& camera,
                                           const shadow_memory& before);
 
+    /// Memory of the light's depth image, and of its edges, where tables with these options need
+    /// one.
+    [[nodiscard]] std::size_t light_image_bytes(const warp_options& options) const;
+
     /// Keeps the shadows that were tested last.
     void remember(shadow_memory& memory, const warpshadow::frustum<double>& camera);
     /// Keeps shadows of the caller's, one per pixel.

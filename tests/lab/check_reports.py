@@ -22,13 +22,14 @@ from pathlib import Path
 lab, data, scratch, part = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4]
 TWICE = os.environ.get("WARPSHADOW_TWICE") == "1"
 METHODS = ["sm", "stable", "min-sm", "dv", "pssm", "sdsm", "lispsm", "fitted", "fitted-2", "min-sm-notw",
-           "lispsm-notw", "fitted-notw", "notw", "notw-nodv", "notw-edges", "notw-oracle",
-           "rtw-forward", "rtw-backward", "rtw-hybrid"]
+           "lispsm-notw", "fitted-notw", "notw", "notw-fine", "notw-nodv", "notw-edges",
+           "notw-oracle", "notw-hybrid", "rtw-forward", "rtw-backward", "rtw-hybrid"]
 FOR_POINTS_ALONE = ["cube6", "cube6-cull", "cube6-efc", "cube6-gs", "cube6-cull-gs", "cube6-efc-gs",
                     "dpsm", "dpsm-cull", "dpsm-pc", "dpsm-gs", "dpsm-cull-gs", "dpsm-pc-gs",
                     "cube-notw", "dpsm-notw"]
-NOT_FOR_POINTS = ["sm", "stable", "pssm", "sdsm", "fitted-2", "notw", "notw-nodv", "notw-edges",
-                  "notw-oracle", "rtw-forward", "rtw-backward", "rtw-hybrid"]
+NOT_FOR_POINTS = ["sm", "stable", "pssm", "sdsm", "fitted-2", "notw", "notw-fine", "notw-nodv",
+                  "notw-edges", "notw-oracle", "notw-hybrid", "rtw-forward", "rtw-backward",
+                  "rtw-hybrid"]
 PARTITIONED = ("pssm", "sdsm", "fitted-2")
 REPEAT = 2
 SMALL = ["--view", "96x64", "--repeat", str(REPEAT)]
@@ -259,7 +260,7 @@ def check_finer_scene():
 def check_tables():
     """Options of the warp tables: what they change, and what they leave alone."""
     arguments = ["--scene", "leaves", "--map", "64"]
-    methods = "notw,notw-edges,rtw-forward,rtw-backward,rtw-hybrid"
+    methods = "notw,notw-edges,notw-hybrid,rtw-forward,rtw-backward,rtw-hybrid"
     usual = report("tables", *arguments, "--methods", methods)
     wrong = {r["method"]: r["wrong_pixel_ratio"] for r in usual["runs"]}
     options = ["--importance", "desired-view,distance,normal", "--tables", "32", "--window", "0.4",
@@ -275,6 +276,11 @@ def check_tables():
     for entry in turned["runs"]:
         assert entry["pass_ms"].get("align", -1) >= 0 or entry["method"] in ("dv", "fitted-notw")
         assert (entry["angle_degrees"] == 0) == (entry["method"] in ("dv", "fitted-notw")), entry
+    # what an edge is to hybrid analysis: each has its own by default
+    hybrid = report("ends", *arguments, "--methods", "notw-hybrid,rtw-hybrid", "--importance", "ends")
+    for entry in hybrid["runs"]:
+        same = entry["wrong_pixel_ratio"] == wrong[entry["method"]]
+        assert same == (entry["method"] == "notw-hybrid"), entry
     # triangles whole: the number of their pieces would follow the tables
     sizes = [report("coarse", *arguments, "--methods", "notw", "--raster", "none", *tables)
              for tables in ([], ["--tables", "8"])]

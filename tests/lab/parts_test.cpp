@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 const std::string data = LAB_TEST_DATA;
 /// Those that are run by default, and one more.
 constexpr std::array<std::string_view, 9> methods{
-    "sm", "min-sm", "dv", "fitted", "rtw-backward", "notw", "notw-edges", "raytraced", "lispsm"};
+    "sm", "min-sm", "dv", "fitted", "rtw-backward", "notw", "notw-hybrid", "raytraced", "lispsm"};
 
 lab::options parsed(std::vector<const char*> arguments) {
     arguments.insert(arguments.begin(), "warpshadow-lab");
