@@ -44,10 +44,12 @@ constexpr texel texels[] = {
     {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8},
     {GL_R32F, GL_RED, GL_FLOAT, 4},
     {GL_RG32F, GL_RG, GL_FLOAT, 8},
+    {GL_RGB32F, GL_RGB, GL_FLOAT, 12},
     {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
     {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1},
     {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4},
     {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8},
+    {GL_RGB32UI, GL_RGB_INTEGER, GL_UNSIGNED_INT, 12},
     {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16},
     {GL_R32I, GL_RED_INTEGER, GL_INT, 4},
     {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, 2},
@@ -270,6 +272,14 @@ void texture::bind(GLuint unit) const {
 
 buffer_texture::buffer_texture(const buffer& source, GLenum internal_format)
     : handle_(generate(glGenTextures)) {
+    // OpenGL would cut what is beyond without a word
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    const std::size_t texels = source.bytes() / texel_of(internal_format).bytes;
+    if (texels > static_cast<std::size_t>(most)) {
+        throw error("a buffer of " + std::to_string(texels) +
+                    " texels is too large: this OpenGL takes up to " + std::to_string(most));
+    }
     bind(spare_unit);
     glTexBuffer(GL_TEXTURE_BUFFER, internal_format, source.id());
     check("glTexBuffer");

@@ -134,8 +134,8 @@ class texture {
 class buffer_texture {
   public:
     buffer_texture() = default;
-    /// @param source          outlives what reads the texture
-    /// @param internal_format of a texel, such as GL_RGBA32F
+    /// @param source outlives what reads the texture
+    /// @throws gl::error when it has more texels of the format than OpenGL takes.
     buffer_texture(const buffer& source, GLenum internal_format);
 
     [[nodiscard]] GLuint id() const { return handle_.id(); }

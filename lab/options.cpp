@@ -44,8 +44,10 @@ Ways to draw maps with tables (--raster); the warp bends edges, rasterisers draw
   fragment        the same, with the depth of the unwarped place per fragment
   rule:PERCENT    and edges cut down to a share of the map: 5, 2.5 and 1 in the papers
   bound:TEXELS    and edges cut until they surely depart by no more than so many texels
-  exact           what surely holds the curved triangle is drawn, and each fragment asks whether
-                  its unwarped place lies in the triangle; the default
+  hull            what surely holds the curved triangle is drawn, and each fragment asks whether
+                  its unwarped place lies in the triangle
+  exact           the same without a rasteriser, in compute: every texel in a box that surely holds
+                  the curved triangle asks; the default
   ideal           no rasteriser: a ray per texel; the time is that of the CPU
 
 Figures (--preset), over a scene, camera and light of your choice:

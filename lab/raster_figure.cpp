@@ -16,8 +16,8 @@ namespace lab {
 namespace {
 
 constexpr std::array<const char*, 2> methods{"rtw-backward", "notw"};
-constexpr std::array<const char*, 8> ways{"none",   "fragment",  "rule:5", "rule:2.5",
-                                          "rule:1", "bound:0.5", "exact",  "ideal"};
+constexpr std::array<const char*, 9> ways{"none",      "fragment", "rule:5", "rule:2.5", "rule:1",
+                                          "bound:0.5", "hull",     "exact",  "ideal"};
 constexpr int zoom = 2;
 
 /// What one cell needs until all have run.

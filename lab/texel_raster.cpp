@@ -17,13 +17,16 @@ constexpr int block_side = 8;
 constexpr std::size_t source_bytes = 48;
 constexpr std::size_t pair_bytes = 8;
 
+/// Lists of more bytes grow no further.
+constexpr std::size_t most_bytes = std::size_t{1} << 28;
+
 /// Buffer bindings and texture units of the shaders.
 enum binding : GLuint {
-    on_counts = 6,
-    on_source = 10,
-    on_depths = 11,
-    on_list = 12,
-    on_second_list = 13
+    on_source = 0,
+    on_list = 1,
+    on_second_list = 2,
+    on_depths = 3,
+    on_counts = 6
 };
 enum unit : GLuint { unit_block_bounds = 5, unit_depths = 9 };
 
@@ -151,9 +154,13 @@ triangle_counts texel_raster::counts() const {
     return counters_.read<triangle_counts>().front();
 }
 
-void texel_raster::grow() {
+bool texel_raster::grow() {
+    if (std::max(sources_.bytes(), pairs_.bytes()) > most_bytes) {
+        return false;
+    }
     sources_ = gl::buffer(2 * sources_.bytes(), nullptr, GL_DYNAMIC_COPY);
     pairs_ = gl::buffer(2 * pairs_.bytes(), nullptr, GL_DYNAMIC_COPY);
+    return true;
 }
 
 std::size_t texel_raster::bytes(const triangle_counts& counted) const {

@@ -32,8 +32,8 @@ class texel_raster {
 
     /// What the passes of the last map counted.
     [[nodiscard]] triangle_counts counts() const;
-    /// Makes the lists longer.
-    void grow();
+    /// Doubles the lists that may lose something; false if they are as large as they may be.
+    bool grow();
     /// Bytes that the map needed of which these are the counts.
     [[nodiscard]] std::size_t bytes(const triangle_counts& counted) const;
 

@@ -11,7 +11,7 @@ constexpr std::size_t most_pieces = std::size_t{1} << 23;
 constexpr std::uint32_t most_invocations = 64 * 64;
 
 /// As in the shaders.
-enum binding : GLuint { on_counts = 6, on_ready = 7, on_waiting = 8, on_next = 9 };
+enum binding : GLuint { on_counts = 6, on_ready = 7, on_waiting = 3, on_next = 5 };
 
 bool any_of(const std::vector<triangle_counts>& counted, std::uint32_t triangle_counts::*count) {
     return std::any_of(counted.begin(), counted.end(),

@@ -13,6 +13,12 @@ namespace lab {
 
 namespace {
 
+/// Hulls: edges above this share of the map are cut without a look at where they go.
+constexpr double longest_walk = 0.125;
+/// What a hull may cover in vain before it is cut: texels, and a share of what it holds.
+constexpr double excess_texels = 64.0;
+constexpr double excess_share = 0.5;
+
 /// Halvings of an edge that are enough for all: 2^-20 of the map is less than its rounding.
 constexpr int most_halvings = 20;
 
@@ -20,7 +26,7 @@ constexpr std::size_t source_bytes = 48;
 constexpr std::size_t piece_bytes = 32;
 
 /// Buffer bindings of the shaders.
-enum binding : GLuint { on_sides = 5, on_source = 10, on_crossing = 12 };
+enum binding : GLuint { on_sides = 5, on_source = 0, on_crossing = 1 };
 
 struct kind_name {
     std::string_view name;
@@ -29,7 +35,8 @@ struct kind_name {
 constexpr std::array kinds{
     kind_name{"none", raster_kind::none},   kind_name{"fragment", raster_kind::fragment},
     kind_name{"rule", raster_kind::rule},   kind_name{"bound", raster_kind::bound},
-    kind_name{"exact", raster_kind::exact}, kind_name{"ideal", raster_kind::ideal},
+    kind_name{"hull", raster_kind::hull},   kind_name{"exact", raster_kind::exact},
+    kind_name{"ideal", raster_kind::ideal},
 };
 
 bool has_value(raster_kind kind) {
@@ -53,8 +60,8 @@ raster_choice parse_raster(const std::string& text) {
             return result;
         }
     }
-    throw bad_input("--raster wants none, fragment, rule:PERCENT, bound:TEXELS (0.1 to 100), exact "
-                    "or ideal, not '" +
+    throw bad_input("--raster wants none, fragment, rule:PERCENT, bound:TEXELS (0.1 to 100), hull, "
+                    "exact or ideal, not '" +
                     text + "'");
 }
 
@@ -74,8 +81,6 @@ std::string raster_name(const raster_choice& choice) {
 warped_raster::warped_raster(passes& gpu)
     : gpu_(gpu), lists_(piece_bytes), texels_(gpu),
       sides_(2 * sizeof(std::uint32_t), nullptr, GL_DYNAMIC_DRAW) {
-    draw_interpolated_ = gpu_.link("shadow_warped.vert", "empty.frag", {"INTERPOLATED"});
-    draw_fragment_ = gpu_.link("shadow_warped.vert", "shadow_warped.frag");
     predict_ = gpu_.compute("predict_gain.comp");
     passes::set_units(predict_);
     for (std::size_t i = 0; i < weaken_.size(); ++i) {
@@ -100,22 +105,34 @@ const warped_raster::steps& warped_raster::steps_for(raster_kind kind) {
             name("RASTER ", kind);
             name("RASTER_RULE ", raster_kind::rule);
             name("RASTER_BOUND ", raster_kind::bound);
+            name("RASTER_HULL ", raster_kind::hull);
             return gpu_.compute(file, defines);
         };
         found = {program("triangle_setup.comp", {}),
                  program("triangle_setup.comp", {"LISTED", "CLIPPED"}),
-                 program("triangle_cut.comp", {})};
+                 program("triangle_cut.comp", {}),
+                 kind == raster_kind::none
+                     ? gpu_.link("shadow_warped.vert", "empty.frag", {"INTERPOLATED"})
+                 : kind == raster_kind::hull
+                     ? gpu_.link("shadow_warped.vert", "shadow_warped.frag", {"COVERAGE"})
+                     : gpu_.link("shadow_warped.vert", "shadow_warped.frag")};
     }
     return *found;
 }
 
 void warped_raster::prepare(const steps& use, std::size_t index, int size,
                             const raster_choice& choice) {
-    const double longest = choice.kind == raster_kind::rule ? choice.value / 100.0 : 2.0;
+    const double texels = size;
+    const double longest = choice.kind == raster_kind::rule   ? choice.value / 100.0
+                           : choice.kind == raster_kind::hull ? longest_walk
+                                                              : 2.0;
     for (const gl::program* program : {&use.within, &use.crossing, &use.cut}) {
         program->set("map_index", static_cast<int>(index));
         program->set("longest", static_cast<float>(longest));
-        program->set("deviation", static_cast<float>(choice.value / size));
+        program->set("deviation", static_cast<float>(choice.value / texels));
+        program->set("map_texels", static_cast<float>(texels));
+        program->set("excess_floor", static_cast<float>(excess_texels / (texels * texels)));
+        program->set("excess_share", static_cast<float>(excess_share));
     }
 }
 
@@ -202,9 +219,7 @@ void warped_raster::draw_map(map_resources& maps, std::size_t index, const raste
     gpu_.timed_pass("shadow map", [&] {
         maps.targets[index].bind();
         glClear(GL_DEPTH_BUFFER_BIT);
-        const gl::program& draw =
-            choice.kind == raster_kind::none ? draw_interpolated_ : draw_fragment_;
-        draw.use();
+        use.draw.use();
         sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
         lists_.draw();
     });
@@ -250,14 +265,21 @@ std::size_t warped_raster::list_bytes() const {
 }
 
 bool warped_raster::grow_lists() {
-    // what was lost is a source, a piece or a pair: all lists grow
     const bool lost = lists_.lost_some();
+    if (by_texel_) {
+        // keeps the counts of what remains lost
+        if (!lost || !texels_.grow()) {
+            return false;
+        }
+        lists_.forget_counts();
+        return true;
+    }
+    // what was lost is a source or a piece: both lists grow
     if (!lists_.grow()) {
         return false;
     }
     if (lost) {
         sources_ = gl::buffer(2 * sources_.bytes(), nullptr, GL_DYNAMIC_COPY);
-        texels_.grow();
     }
     return true;
 }

@@ -23,8 +23,9 @@ enum class raster_kind {
     fragment = 1, ///< the same, with the depth of the unwarped place per fragment
     rule = 2,     ///< and edges cut down to a share of the map (Rosen 2012, Milet et al. 2015)
     bound = 3,    ///< and edges cut until they depart by no more than is allowed
-    exact = 4,    ///< texel by texel: depth and coverage of the unwarped place
-    ideal = 5     ///< no rasteriser: a ray per texel
+    hull = 4,     ///< hulls of the curved triangles; depth and coverage per fragment
+    exact = 5,    ///< the same without hulls and rasteriser: texel by texel
+    ideal = 6     ///< no rasteriser: a ray per texel
 };
 
 /// One of them, with its number.
@@ -70,6 +71,7 @@ class warped_raster {
         gl::program within;   ///< sets up triangles within the bounds of the map
         gl::program crossing; ///< and those that cross them
         gl::program cut;
+        gl::program draw;
     };
 
     const steps& steps_for(raster_kind kind);
@@ -82,8 +84,8 @@ class warped_raster {
     triangle_lists lists_;
     texel_raster texels_;
     gl::buffer sources_, sides_, crossing_;
-    std::array<std::optional<steps>, 4> steps_; ///< by kind, made when first asked for
-    gl::program draw_interpolated_, draw_fragment_, predict_;
+    std::array<std::optional<steps>, 5> steps_; ///< by kind, made when first asked for
+    gl::program predict_;
     std::array<gl::program, 2> weaken_; ///< by format of the tables
     bool by_texel_ = false;             ///< the last map
     float mean_side_ = 1.0f;

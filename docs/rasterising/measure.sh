@@ -2,7 +2,7 @@
 # Sourced by run.sh, with $folder and $out set.
 scenes=outdoor,interior,colonnade,leaves
 lab --scene $scenes --view 512x384 --repeat 1 --methods dv,notw \
-    --raster none,fragment,rule:5,rule:2.5,rule:1,bound:0.5,exact,ideal --out "$out/chain"
+    --raster none,fragment,rule:5,rule:2.5,rule:1,bound:0.5,hull,exact,ideal --out "$out/chain"
 cp "$out/chain/results.json" "$folder/chain.json"
 lab --scene $scenes --camera 0 --camera 1 --light 0 --light 1 --view 512x384 --repeat 1 \
     --map 512,1024 --methods dv,notw --out "$out/views"

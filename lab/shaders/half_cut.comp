@@ -3,8 +3,8 @@
 // until none does.
 layout(local_size_x = 64) in;
 #include "lab/half_pieces.glsl"
-layout(std430, binding = 8) buffer waiting_pieces { half_piece waiting_list[]; };
-layout(std430, binding = 9) buffer next_pieces { half_piece next_list[]; };
+layout(std430, binding = 3) buffer waiting_pieces { half_piece waiting_list[]; };
+layout(std430, binding = 5) buffer next_pieces { half_piece next_list[]; };
 uniform int list;        // which of the two lists is read
 uniform bool last_round; // draw what is left, cut or not
 

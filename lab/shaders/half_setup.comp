@@ -5,7 +5,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer positions { float position[]; };
 layout(std430, binding = 1) readonly buffer indices { uint index[]; };
 layout(std430, binding = 2) readonly buffer face_normals { vec4 face_normal[]; };
-layout(std430, binding = 8) writeonly buffer waiting_pieces { half_piece waiting_list[]; };
+layout(std430, binding = 3) writeonly buffer waiting_pieces { half_piece waiting_list[]; };
 uniform uint triangle_count;
 
 vec3 corner(uint i)

@@ -1,22 +1,10 @@
 // Draws a triangle into a map with tables, texel by texel: a texel holds the depth of the triangle's
 // plane at the place that the texel's centre has before the warp, if that place lies in the triangle.
-// No rasteriser, hence no straight edges; the least depth of all is kept by its bits.
+// No rasteriser, hence no straight edges. The least depth of all is kept by its bits: a minimum is
+// the same in whatever order invocations come to it, also where depths are equal.
+#include "lab/triangle_sides.glsl"
 layout(binding = 4) uniform sampler2D centres;
-layout(std430, binding = 11) buffer map_depths { uint map_depth[]; }; // bits, row by row
-
-// The end from which the side of an edge is asked. The same for both triangles on the edge, so that
-// none of both can miss what the other does not take.
-vec2 end_of(vec2 a, vec2 b)
-{
-    return b.x < a.x || (b.x == a.x && b.y < a.y) ? b : a;
-}
-
-// On which side of an edge p lies; the other direction gives the same bits with the other sign.
-float side(vec2 along, vec2 end, vec2 p)
-{
-    precise float area = along.x * (p.y - end.y) - along.y * (p.x - end.x);
-    return area;
-}
+layout(std430, binding = 3) buffer map_depths { uint map_depth[]; }; // bits, row by row
 
 // first and last: corners of a box of texels that holds all that it covers
 void draw_texels(source_triangle t, ivec2 first, ivec2 last)
@@ -33,7 +21,7 @@ void draw_texels(source_triangle t, ivec2 first, ivec2 last)
         float side0 = side(along0, end0, p);
         float side1 = side(along1, end1, p);
         float side2 = side(along2, end2, p);
-        if (min(side0, min(side1, side2)) >= 0.0 || max(side0, max(side1, side2)) <= 0.0) {
+        if (is_inside(side0, side1, side2)) {
             float depth = clamp(t.depth0 + dot(t.depth_slope, p - t.p0), depth_lo, depth_hi);
             atomicMin(map_depth[at.y * columns + at.x], floatBitsToUint(depth));
         }

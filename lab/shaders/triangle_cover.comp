@@ -3,8 +3,8 @@
 layout(local_size_x = 64) in;
 #include "lab/triangle_layout.glsl"
 #include "lab/texel_depths.glsl"
-layout(std430, binding = 10) readonly buffer source_triangles { source_triangle source[]; };
-layout(std430, binding = 12) readonly buffer block_pairs { uvec2 pair[]; }; // source, block
+layout(std430, binding = 0) readonly buffer source_triangles { source_triangle source[]; };
+layout(std430, binding = 1) readonly buffer block_pairs { uvec2 pair[]; }; // source, block
 uniform uint pair_count;
 uniform int block_columns; // blocks along a side
 

@@ -2,8 +2,8 @@
 // Shadow pass, second step: halves an edge of every piece that waits. Dispatched until none does.
 layout(local_size_x = 64) in;
 #include "lab/triangles.glsl"
-layout(std430, binding = 8) buffer waiting_triangles { waiting_piece waiting_list[]; };
-layout(std430, binding = 9) buffer next_triangles { waiting_piece next_list[]; };
+layout(std430, binding = 3) buffer waiting_triangles { waiting_piece waiting_list[]; };
+layout(std430, binding = 5) buffer next_triangles { waiting_piece next_list[]; };
 uniform int list;        // which of the two lists is read
 uniform bool last_round; // draw what is left, cut or not
 
@@ -38,8 +38,17 @@ void main()
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
         waiting_piece t = waiting_list[i];
         // one call in a loop: the compiler copies what it calls
+#if RASTER == RASTER_HULL
+        // hulls need not agree from triangle to triangle: their pieces are halved twice at once
+        for (int part = 0; part < 4; ++part) {
+            waiting_piece piece = half_of(t, (part & 1) != 0);
+            piece.edge = longest_edge(edge_lengths(piece));
+            put(half_of(piece, (part & 2) != 0));
+        }
+#else
         for (int part = 0; part < 2; ++part) {
             put(half_of(t, part == 1));
         }
+#endif
     }
 }

@@ -1,19 +1,20 @@
 #version 430 core
-// Shadow pass: projects triangles, clips them and sorts what is left; with TEXELS, only writes it. LISTED: those of a list, and
-// not all. CLIPPED: those that cross the bounds of the map, which else are put on the list.
+// Shadow pass: projects triangles, clips them and sorts what is left; with TEXELS, only writes it.
+// LISTED: those of a list, and not all. CLIPPED: those that cross the bounds of the map, which else
+// are put on the list.
 layout(local_size_x = 64) in;
 #include "lab/triangle_corners.glsl"
 #include "lab/triangle_counts.glsl"
 #include "lab/triangle_layout.glsl"
 #ifndef TEXELS
 #include "lab/triangles.glsl"
-layout(std430, binding = 8) writeonly buffer waiting_triangles { waiting_piece waiting_list[]; };
+layout(std430, binding = 3) writeonly buffer waiting_triangles { waiting_piece waiting_list[]; };
 #endif
-layout(std430, binding = 10) writeonly buffer source_triangles { source_triangle source[]; };
+layout(std430, binding = 0) writeonly buffer source_triangles { source_triangle source[]; };
 #ifdef LISTED
-layout(std430, binding = 12) readonly buffer listed_triangles { uint listed[]; };
+layout(std430, binding = 1) readonly buffer listed_triangles { uint listed[]; };
 #else
-layout(std430, binding = 12) writeonly buffer crossing_triangles { uint crossing_list[]; };
+layout(std430, binding = 1) writeonly buffer crossing_triangles { uint crossing_list[]; };
 #endif
 uniform uint triangle_count;
 

@@ -11,11 +11,11 @@ layout(local_size_x = 64) in;
 #include "warpshadow/warped_box.glsl"
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
-layout(std430, binding = 12) writeonly buffer large_triangles { uint large_list[]; };
+layout(std430, binding = 1) writeonly buffer large_triangles { uint large_list[]; };
 #ifdef LISTED
-layout(std430, binding = 13) readonly buffer listed_triangles { uint listed[]; };
+layout(std430, binding = 2) readonly buffer listed_triangles { uint listed[]; };
 #else
-layout(std430, binding = 13) writeonly buffer crossing_triangles { uint crossing_list[]; };
+layout(std430, binding = 2) writeonly buffer crossing_triangles { uint crossing_list[]; };
 #endif
 uniform uint triangle_count;
 uniform int list;         // for what is larger: 0 or 1

@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 layout(binding = 2) uniform sampler2D warp_rows;
 layout(binding = 3) uniform sampler2D warp_columns;
 layout(binding = 5) uniform sampler2D block_bounds;
-layout(std430, binding = 10) readonly buffer source_triangles { source_triangle source[]; };
-layout(std430, binding = 12) writeonly buffer block_pairs { uvec2 pair[]; }; // source, block
+layout(std430, binding = 0) readonly buffer source_triangles { source_triangle source[]; };
+layout(std430, binding = 1) writeonly buffer block_pairs { uvec2 pair[]; }; // source, block
 uniform uint source_count;
 uniform float map_texels;  // along a side
 uniform int block_columns; // blocks along a side
