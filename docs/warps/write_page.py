@@ -24,7 +24,11 @@ KEPT = ("scene", "camera", "light", "method", "map", "samples", "wrong_pixel_rat
         "bytes", "triangles")
 # method, against what, and the share of its wrong pixels that was aimed at
 AIMS = (("notw", "sm", 0.40), ("notw", "dv", 0.50), ("notw", "rtw-backward", 0.85),
-        ("notw-edges", "notw", 0.70))
+        ("notw-fine", "sm", 0.40), ("notw-fine", "dv", 0.50), ("notw-fine", "rtw-backward", 0.85),
+        ("notw-hybrid", "sm", 0.40), ("notw-hybrid", "dv", 0.50),
+        ("notw-hybrid", "rtw-backward", 0.85),
+        ("notw-edges", "notw", 0.70), ("notw-hybrid", "notw", 0.70),
+        ("notw-hybrid", "notw-fine", 0.70))
 
 
 def reduce(source):
@@ -126,6 +130,19 @@ def times(runs):
                               runs.by[(*v, side, m)]["pass_ms"]["g-buffer"] for v in runs.views)
             for m in runs.methods]
         rows.append(["**making the warp**"] + [f"**{b:.2f}**" if b else "" for b in building])
+
+        def against(method, other, passes, side=side):
+            """Of the passes of a kind, the median over the views of the ratio to another method's."""
+            def spent(view, name):
+                return sum(ms for n, ms in runs.by[(*view, side, name)]["pass_ms"].items()
+                           if passes(n))
+            return statistics.median(spent(v, method) / spent(v, other) for v in runs.views)
+
+        rows.append(["**making the warp, against `notw`**"] + [
+            f"**{against(m, 'notw', lambda n: n not in DRAWING):.2f}**" if b else ""
+            for m, b in zip(runs.methods, building)])
+        rows.append(["**drawing the map, against `dv`**"] + [
+            f"**{against(m, 'dv', lambda n: n in MAP):.2f}**" for m in runs.methods])
         rows.append(["**all passes, against `sm`**"] + [
             f"**{mean([total(v, m) / total(v, 'sm') for v in runs.views]):.2f}**"
             for m in runs.methods])
@@ -137,6 +154,8 @@ def times(runs):
 # passes that are not of the making of a warp
 DRAWING = ("g-buffer", "unwarp centres", "set up triangles", "cut triangles", "shadow map",
            "shadow test")
+# passes that draw the map
+MAP = ("set up triangles", "cut triangles", "shadow map")
 
 
 def note(results, runs):
