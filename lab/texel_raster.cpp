@@ -21,13 +21,8 @@ constexpr std::size_t pair_bytes = 8;
 constexpr std::size_t most_bytes = std::size_t{1} << 28;
 
 /// Buffer bindings and texture units of the shaders.
-enum binding : GLuint {
-    on_source = 0,
-    on_list = 1,
-    on_second_list = 2,
-    on_depths = 3,
-    on_counts = 6
-};
+enum binding : GLuint { on_source = 0, on_list = 1, on_second_list = 2, on_counts = 6 };
+enum image_unit : GLuint { image_depths = 0, image_block_bounds = 1 };
 enum unit : GLuint { unit_block_bounds = 5, unit_depths = 9 };
 
 int blocks_along(int size) {
@@ -61,9 +56,7 @@ void texel_raster::make_room_for(int size) {
         return;
     }
     size_ = size;
-    depths_ =
-        list_of(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), sizeof(float));
-    depths_view_ = gl::buffer_texture(depths_, GL_R32F);
+    depths_ = gl::texture(GL_R32UI, size, size);
     block_bounds_ = gl::texture(GL_RGBA32F, blocks_along(size), blocks_along(size));
 }
 
@@ -72,8 +65,8 @@ void texel_raster::sort(const map_resources& maps, std::size_t index) {
     const triangle_counts none;
     counters_.write(0, sizeof none, &none);
     counters_.bind_base(GL_SHADER_STORAGE_BUFFER, on_counts);
-    depths_.fill(std::bit_cast<std::uint32_t>(1.0f));
-    depths_.bind_base(GL_SHADER_STORAGE_BUFFER, on_depths);
+    depths_.clear(glm::uvec4(std::bit_cast<std::uint32_t>(1.0f)));
+    depths_.bind_image(image_depths, GL_READ_WRITE);
     sources_.bind_base(GL_SHADER_STORAGE_BUFFER, on_source);
     gpu_.bind_triangles();
     crossing_.bind_base(GL_SHADER_STORAGE_BUFFER, on_second_list);
@@ -120,7 +113,7 @@ void texel_raster::spread(const map_resources& maps) {
         return;
     }
     const int blocks = blocks_along(maps.size);
-    block_bounds_.bind_image(0, GL_WRITE_ONLY);
+    block_bounds_.bind_image(image_block_bounds, GL_WRITE_ONLY);
     bounds_.dispatch(blocks, blocks);
     gl::wait_for_writes();
     block_bounds_.bind(unit_block_bounds);
@@ -143,8 +136,7 @@ void texel_raster::draw(const map_resources& maps, std::size_t index) {
     maps.targets[index].bind();
     glDepthFunc(GL_ALWAYS);
     write_.use();
-    write_.set("map_texels", maps.size);
-    depths_view_.bind(unit_depths);
+    depths_.bind(unit_depths);
     nothing_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDepthFunc(GL_LESS);

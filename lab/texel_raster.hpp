@@ -47,9 +47,8 @@ class texel_raster {
     gl::buffer counters_;
     std::array<gl::buffer, 2> larger_; ///< numbers of triangles that are too large for either sort
     gl::buffer crossing_;              ///< of those that cross the bounds of the map
-    gl::buffer sources_, pairs_, depths_;
-    gl::buffer_texture depths_view_;
-    gl::texture block_bounds_;
+    gl::buffer sources_, pairs_;
+    gl::texture depths_, block_bounds_; ///< bits of the depths; where blocks lie before the warp
     std::array<gl::program, 2> sort_;
     gl::program set_up_within_, set_up_crossing_;
     gl::program bounds_, spread_, cover_, write_;

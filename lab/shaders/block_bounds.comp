@@ -3,7 +3,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "lab/triangle_layout.glsl"
 layout(binding = 4) uniform sampler2D centres;
-layout(binding = 0, rgba32f) uniform writeonly image2D block_bounds;
+layout(binding = 1, rgba32f) uniform writeonly image2D block_bounds;
 
 void main()
 {

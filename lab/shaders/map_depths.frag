@@ -1,10 +1,8 @@
 #version 430 core
 // The depths that triangles left texel by texel, as a map.
-layout(binding = 9) uniform samplerBuffer map_depths;
-uniform int map_texels;
+layout(binding = 9) uniform usampler2D map_depths;
 
 void main()
 {
-    ivec2 at = ivec2(gl_FragCoord.xy);
-    gl_FragDepth = texelFetch(map_depths, at.y * map_texels + at.x).x;
+    gl_FragDepth = uintBitsToFloat(texelFetch(map_depths, ivec2(gl_FragCoord.xy), 0).x);
 }
