@@ -25,20 +25,20 @@ class texel_raster {
 
     /// Sorts the triangles of the scene and draws the small ones.
     void sort(const map_resources& maps, std::size_t index);
-    /// Finds the blocks that the others may cover.
-    void spread(const map_resources& maps);
-    /// Draws these, and writes the map.
+    /// Draws the others, as many at a time as there is room for their blocks, and writes the map.
     void draw(const map_resources& maps, std::size_t index);
 
-    /// What the passes of the last map counted.
+    /// What the passes of the last map counted; of the pairs, the most at a time.
     [[nodiscard]] triangle_counts counts() const;
-    /// Doubles the lists that may lose something; false if they are as large as they may be.
+    /// Doubles the list that may lose something; false if it is as large as it may be.
     bool grow();
     /// Bytes that the map needed of which these are the counts.
     [[nodiscard]] std::size_t bytes(const triangle_counts& counted) const;
 
   private:
     void make_room_for(int size);
+    /// Pairs of some of the sources and of the blocks that these may cover; how many there are.
+    std::size_t spread(std::size_t first, std::size_t count, int blocks);
     void sort_into(std::size_t list, std::size_t index, int size, std::size_t triangles);
     void set_up(const gl::program& program, const gl::buffer& list, std::size_t index,
                 std::uint32_t count);
@@ -53,7 +53,8 @@ class texel_raster {
     gl::program set_up_within_, set_up_crossing_;
     gl::program bounds_, spread_, cover_, write_;
     gl::vertex_array nothing_;
-    int size_ = 0; ///< of the map that there is room for
+    int size_ = 0;               ///< of the map that there is room for
+    std::size_t most_pairs_ = 0; ///< at a time, of the last map
 };
 
 } // namespace lab

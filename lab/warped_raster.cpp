@@ -155,7 +155,6 @@ void warped_raster::set_up(const steps& use) {
 
 void warped_raster::draw_exact(map_resources& maps, std::size_t index) {
     gpu_.timed_pass("set up triangles", [&] { texels_.sort(maps, index); });
-    gpu_.timed_pass("cut triangles", [&] { texels_.spread(maps); });
     gpu_.timed_pass("shadow map", [&] { texels_.draw(maps, index); });
 }
 

@@ -25,7 +25,8 @@ namespace {
 constexpr int size = 192;
 
 /// Flat triangles of all sizes over a ground; neighbours share edges where they come from one fan.
-lab::scene flat_triangles(unsigned seed, int fans, const ws::light<double>& light) {
+/// `bottom` is the least height that the map holds, 0 that of the ground.
+lab::scene flat_triangles(unsigned seed, int fans, const ws::light<double>& light, double bottom) {
     lab::scene world;
     world.name = "flat";
     std::mt19937 random(seed);
@@ -54,7 +55,7 @@ lab::scene flat_triangles(unsigned seed, int fans, const ws::light<double>& ligh
         add_fan({10.0f * x, 10.0f * y}, radius, height, 3 + static_cast<int>(4.0f * parts));
     }
     add_fan({5.0f, 5.0f}, 12.0f, 0.0f, 4); // the ground, beyond the map
-    world.box = {glm::dvec3(0.0, 0.0, 0.0), glm::dvec3(10.0, 1.0, 10.0)};
+    world.box = {glm::dvec3(0.0, bottom, 0.0), glm::dvec3(10.0, 1.0, 10.0)};
     world.cameras.push_back({"0", {5.0, 8.0, 5.0}, {5.0, 0.0, 5.1}, 1.0});
     world.lights.push_back({"0", light});
     return world;
@@ -91,8 +92,8 @@ struct drawn_maps {
 
     drawn_maps(unsigned seed, int fans,
                const ws::light<double>& light = ws::sun(glm::dvec3(0.0, -1.0, 0.0)),
-               double same_height = 1e-4)
-        : world(flat_triangles(seed, fans, light)), tolerance(same_height) {
+               double same_height = 1e-4, double bottom = 0.0)
+        : world(flat_triangles(seed, fans, light, bottom)), tolerance(same_height) {
         const lab::light_maps chosen = lab::whole_scene_maps(world, world.lights.front());
         gpu.draw_view(seen, glm::mat4(1.0f), glm::vec3(0.0f)); // sets the state of all passes
         gpu.use(seen, chosen, world.lights.front().light);
@@ -220,6 +221,24 @@ TEST_CASE("triangles for which there was no room are counted, and drawn after li
     const std::vector<float> exact = maps.draw({lab::raster_kind::exact, 0.0});
     CHECK(maps.raster.counted().front().lost == 0);
     CHECK(maps.deviation(exact, {0.005, 0.01, 0.02}) <= 0.02);
+}
+
+TEST_CASE("a triangle over more blocks of texels than llvmpipe's loops go round is drawn whole") {
+    // the ground lies under all of the map, and is nearer than what is nowhere drawn
+    drawn_maps maps(3, 1, ws::sun(glm::dvec3(0.0, -1.0, 0.0)), 1e-4, -0.25);
+    constexpr int side = 4608; // a quarter of the blocks is under one triangle of the ground
+    lab::map_resources large{side, 1, size, size};
+    large.warps.front().rows.write(maps.rows.data());
+    large.warps.front().columns.write(maps.columns.data());
+    lab::passes::bind_tables(large, 0);
+    maps.gpu.find_centres(large, 0);
+    do {
+        maps.raster.forget_counts();
+        maps.raster.draw_map(large, 0, {lab::raster_kind::exact, 0.0}, nullptr, true);
+    } while (maps.raster.grow_lists());
+    const std::vector<float> depth = large.depth.read<float>();
+    REQUIRE(depth.size() == static_cast<std::size_t>(side) * side);
+    CHECK(std::count(depth.begin(), depth.end(), 1.0f) == 0);
 }
 
 TEST_CASE("J43: triangles that reach behind a spot light are clipped before they are warped") {
