@@ -44,7 +44,7 @@ struct method_frames {
     light_maps frame(const method& how, const view_request& request, light_memory& memory,
                      map_resources& maps, const shadow_memory& shadows, bool count);
 
-    /// Makes the lists of cut triangles long enough; false if they were.
+    /// Makes the lists of triangles long enough; false if they were.
     bool grow_lists(const method& how);
 
     void forget_counts();

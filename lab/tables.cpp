@@ -58,6 +58,9 @@ table_passes::splat_programs& table_passes::programs(const warp_options& options
         defines.emplace_back("WS_SPLAT_WEIGHTED");
         if (options.functions.edge) {
             defines.emplace_back(asks_for_ends(options) ? "SHADOW_ENDS" : "LIGHT_EDGES");
+            if (options.rectilinear) {
+                defines.emplace_back("EITHER_AXIS"); // one splat serves both
+            }
         }
     }
     if (options.cells == ws::cell_rule::largest) {
@@ -249,10 +252,12 @@ std::vector<std::uint32_t> table_passes::importance(map_resources& maps, std::si
                                                     const warp_options& options,
                                                     const ws::frustum<double>& camera,
                                                     const shadow_memory& before) {
-    prepare(maps, index, options, camera, before);
+    warp_options of_both = options;
+    of_both.rectilinear = true; // one splat that tells of both axes
+    prepare(maps, index, of_both, camera, before);
     std::vector<std::uint32_t> counts;
     gpu_.timed_pass("align", [&] {
-        splat(maps, index, options, false);
+        splat(maps, index, of_both, false);
         counts = maps.warps[index].counts.read<std::uint32_t>();
     });
     return counts;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <limits>
 
 namespace lab {
 namespace {
@@ -154,7 +155,11 @@ void texel_raster::draw(const map_resources& maps, std::size_t index) {
         spread_.set("strips", static_cast<unsigned>(strips_of(blocks)));
         cover_.set("block_columns", blocks);
     }
-    std::size_t share = std::min(sources, most_invocations / strips_of(blocks));
+    // so that the count of pairs cannot pass its 32 bits either
+    const std::size_t most_sources =
+        std::numeric_limits<std::uint32_t>::max() /
+        (static_cast<std::size_t>(blocks) * static_cast<std::size_t>(blocks));
+    std::size_t share = std::min({sources, most_invocations / strips_of(blocks), most_sources});
     for (std::size_t first = 0; first < sources;) {
         share = std::min(share, sources - first);
         pairs_.bind_base(GL_SHADER_STORAGE_BUFFER, on_list);

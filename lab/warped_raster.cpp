@@ -256,11 +256,14 @@ void warped_raster::trace_map(map_resources& maps, std::size_t index, const ray_
 std::size_t warped_raster::list_bytes() const {
     std::size_t most = 0;
     std::size_t sources = 0;
+    std::size_t crossing = 0;
     for (const triangle_counts& each : lists_.counted()) {
         most = std::max(most, texels_.bytes(each));
         sources = std::max<std::size_t>(sources, each.sources);
+        crossing = std::max<std::size_t>(crossing, each.crossing);
     }
-    return by_texel_ ? most : sources * source_bytes + lists_.bytes();
+    return by_texel_ ? most
+                     : sources * source_bytes + crossing * sizeof(std::uint32_t) + lists_.bytes();
 }
 
 bool warped_raster::grow_lists() {

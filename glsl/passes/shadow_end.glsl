@@ -3,9 +3,9 @@
 // Not a pass but what a weight of splat.glsl may ask: the component of the axis that is splatted goes
 // to `ws_edge_importance`. Include warpshadow/importance_functions.glsl, warpshadow/warp.glsl and
 // warpshadow/bias.glsl before, and define WS_DEPTH_LAYER as in depth_edges.glsl to read one layer of
-// an array.
+// an array. The depth image's unit is not the one that splat.glsl reads the rows from.
 #ifndef WS_BINDING_DEPTHS
-#define WS_BINDING_DEPTHS 0
+#define WS_BINDING_DEPTHS 1
 #endif
 #ifdef WS_DEPTH_LAYER
 #define WS_DEPTH_SAMPLER sampler2DArray

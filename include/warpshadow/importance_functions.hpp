@@ -95,6 +95,11 @@ glm::vec<2, T> shadow_end(glm::vec<3, T> below, glm::vec<3, T> level, glm::vec<3
     glm::vec<3, T> along_v = third - first;
     T u = glm::abs(along_u.z - along_u.x);
     T v = glm::abs(along_v.x + along_v.y + along_v.z);
+    // squares of very small numbers would vanish
+    T steepest = glm::max(u, v);
+    T scale = steepest > T(0) ? steepest : T(1);
+    u = u / scale;
+    v = v / scale;
     T slope = glm::sqrt(u * u + v * v);
     if (slope > T(0)) {
         return glm::vec<2, T>(u / slope, v / slope);
@@ -108,10 +113,10 @@ glm::vec<2, T> shadow_end(glm::vec<3, T> below, glm::vec<3, T> level, glm::vec<3
 /// 1 on a shadow edge, α without (Rosen 2012, §5.3: α = 0.001), and linear in between.
 ///
 /// @param edge  0 or 1 from `depth_edge` on the light's depths, or on the shadows that were seen
-///              last; a component of `shadow_end`; in [0, 1]
+///              last; a component of `shadow_end`; clamped to [0, 1], NaN counts as 0
 /// @param alpha importance without an edge, in [0, 1]
 template <typename T> T edge_importance(T edge, T alpha) {
-    return alpha + (T(1) - alpha) * edge;
+    return edge > T(0) ? alpha + (T(1) - alpha) * glm::min(edge, T(1)) : alpha;
 }
 
 /// More for surfaces that face the viewer: 1 + β · clamp(−n · v, 0, 1) (Rosen 2012, §5.4: β = 2).

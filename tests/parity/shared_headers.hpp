@@ -18,4 +18,5 @@
 #include <warpshadow/warp.hpp>
 #include <warpshadow/warp_build.hpp>
 #include <warpshadow/warp_strength.hpp>
+#include <warpshadow/warped_box.hpp>
 #include <warpshadow/warped_hull.hpp>

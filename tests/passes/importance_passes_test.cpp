@@ -381,6 +381,7 @@ TEST_CASE("passes: ends of shadows are those of the host") {
 #include "warpshadow/importance_functions.glsl"
 #include "warpshadow/warp.glsl"
 #include "warpshadow/bias.glsl"
+#define WS_BINDING_DEPTHS 0
 #include "passes/shadow_end.glsl"
 layout(local_size_x = 64) in;
 struct asked { vec4 p; vec4 normal; };

@@ -135,6 +135,9 @@ TEMPLATE_TEST_CASE("normal, lit and edge importance as published, at their limit
     CHECK(edge_importance(T(1), T(0.001)) == T(1));
     CHECK(edge_importance(T(0), T(0.001)) == T(0.001));
     CHECK(edge_importance(T(0.5), T(0.5)) == T(0.75));
+    CHECK(edge_importance(nan, T(0.25)) == T(0.25));
+    CHECK(edge_importance(T(-1), T(0.25)) == T(0.25));
+    CHECK(edge_importance(std::numeric_limits<T>::infinity(), T(0.25)) == T(1));
 }
 
 TEMPLATE_TEST_CASE("shadow_end is across the gradient of all 512 sets of nine answers", "", float,
@@ -157,8 +160,8 @@ TEMPLATE_TEST_CASE("shadow_end is across the gradient of all 512 sets of nine an
             const double expected = length > 0.0 ? std::abs(gradient[axis]) / length
                                     : agree      ? 0.0
                                                  : std::sqrt(0.5);
-            // a root and a quotient, half an ulp of a number below 1 each
-            CHECK(std::abs(double(end[axis]) - expected) <= 2 * roundoff<T>());
+            // two quotients and a root of a sum, half an ulp of a number below 2 each
+            CHECK(std::abs(double(end[axis]) - expected) <= 6 * roundoff<T>());
         }
     }
 }
@@ -179,6 +182,13 @@ TEMPLATE_TEST_CASE("shadow_end is finite and in [0, 1] for any answers, NaN and 
         const glm::vec<2, T> end = shadow_end(rows[0], rows[1], rows[2]);
         RC_ASSERT(end.x >= T(0) && end.x <= T(1) && end.y >= T(0) && end.y <= T(1));
     }));
+    // squares that a T does not hold
+    const glm::vec<3, T> none(T(0));
+    for (const T tiny : {std::sqrt(std::numeric_limits<T>::denorm_min()),
+                         std::numeric_limits<T>::min(), std::numeric_limits<T>::denorm_min()}) {
+        CHECK(shadow_end(none, glm::vec<3, T>(T(0), T(0), tiny), none) ==
+              glm::vec<2, T>(T(1), T(0)));
+    }
 }
 
 TEMPLATE_TEST_CASE("combinations: any subset, by product and by sum, gated by light and view", "",

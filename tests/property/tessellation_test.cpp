@@ -399,6 +399,17 @@ TEMPLATE_TEST_CASE("no part of a warped box lies outside the box around it", "",
             // along u nothing is given away: the sides reach both ends
             RC_ASSERT(least <= wide(warped.lo.x) + rounding);
             RC_ASSERT(most >= wide(warped.hi.x) - rounding);
+            // along v nothing but that all U is taken to occur with all v: between the rows of the
+            // columns' table the ends lie at rows or at the ends of the range
+            glm::vec<2, T> v(T(1), T(0));
+            for (int row = -1; row <= table_rows(t.columns.view()); ++row) {
+                const T at = std::clamp((T(row) + T(0.5)) / T(table_rows(t.columns.view())),
+                                        warped.lo.x, warped.hi.x);
+                v.x = std::min(v.x, axis_range(t.columns.view(), at, at, box.lo.y, box.lo.y).x);
+                v.y = std::max(v.y, axis_range(t.columns.view(), at, at, box.hi.y, box.hi.y).y);
+            }
+            RC_ASSERT(std::abs(wide(v.x) - wide(warped.lo.y)) <= rounding);
+            RC_ASSERT(std::abs(wide(v.y) - wide(warped.hi.y)) <= rounding);
         }
     }));
 }
