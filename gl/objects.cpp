@@ -275,9 +275,9 @@ buffer_texture::buffer_texture(const buffer& source, GLenum internal_format)
     // OpenGL would cut what is beyond without a word
     GLint most = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    const std::size_t texels = source.bytes() / texel_of(internal_format).bytes;
-    if (texels > static_cast<std::size_t>(most)) {
-        throw error("a buffer of " + std::to_string(texels) +
+    const std::size_t count = source.bytes() / texel_of(internal_format).bytes;
+    if (count > static_cast<std::size_t>(most)) {
+        throw error("a buffer of " + std::to_string(count) +
                     " texels is too large: this OpenGL takes up to " + std::to_string(most));
     }
     bind(spare_unit);

@@ -79,8 +79,10 @@ TEMPLATE_TEST_CASE("shadow_end_at asks the nine texels around a point, each at i
                 const int i = std::clamp(at[0] + x - 1, 0, size[0] - 1);
                 const int j = std::clamp(at[1] + y - 1, 0, size[1] - 1);
                 const long double across =
-                    static_cast<long double>(normal.x) * ((i + 0.5L) / size[0] - p.x) +
-                    static_cast<long double>(normal.y) * ((j + 0.5L) / size[1] - p.y);
+                    static_cast<long double>(normal.x) *
+                        ((i + 0.5L) / size[0] - static_cast<long double>(p.x)) +
+                    static_cast<long double>(normal.y) *
+                        ((j + 0.5L) / size[1] - static_cast<long double>(p.y));
                 const long double step = -across / static_cast<long double>(normal.z);
                 const long double plane =
                     static_cast<long double>(p.z) + (std::abs(step) <= 1.0L ? step : 0.0L);
