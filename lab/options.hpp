@@ -47,8 +47,8 @@ struct options {
     std::vector<std::string> scenes{"outdoor", "interior"};
     std::vector<std::string> cameras{"0"};
     std::vector<std::string> lights{"0"};
-    std::vector<std::string> methods{"sm",           "min-sm", "dv",         "fitted",
-                                     "rtw-backward", "notw",   "notw-edges", "raytraced"};
+    std::vector<std::string> methods{"sm",           "min-sm", "dv",          "fitted",
+                                     "rtw-backward", "notw",   "notw-hybrid", "raytraced"};
     std::vector<int> maps{512};
     glm::ivec2 view{1024, 768};
     int repeat = 5;

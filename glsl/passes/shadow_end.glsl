@@ -19,7 +19,7 @@ layout(binding = WS_BINDING_DEPTHS) uniform WS_DEPTH_SAMPLER ws_depths;
 
 // p: position in the map before a warp, and depth; normal: of its surface in map space; bias: what a
 // texel may lie before that plane and still be the same surface
-vec2 ws_shadow_end_at(vec3 p, vec3 normal, float bias)
+vec2 ws_shadow_end_in_image(vec3 p, vec3 normal, float bias)
 {
     ivec2 size = textureSize(ws_depths, 0).xy;
     if (any(isnan(p.xy)) || any(isinf(p.xy))) {

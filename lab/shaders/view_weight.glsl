@@ -19,7 +19,7 @@ float seen_edge(vec2 p, vec3 world, vec3 normal)
 #if defined(SHADOW_ENDS)
     vec4 clip = light_matrix * vec4(world, 1.0);
     vec3 plane = ws_map_normal(light_normal, vec4(normal, -dot(normal, world)));
-    vec2 end = ws_shadow_end_at(vec3(p, clip.z / clip.w * 0.5 + 0.5), plane, plane_rounding(plane));
+    vec2 end = ws_shadow_end_in_image(vec3(p, clip.z / clip.w * 0.5 + 0.5), plane, plane_rounding(plane));
 #if defined(EITHER_AXIS)
     return length(end); // of a unit vector, where a shadow ends
 #elif defined(WS_SPLAT_COLUMNS)

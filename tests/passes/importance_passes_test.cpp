@@ -392,7 +392,7 @@ void main()
 {
     int i = int(gl_GlobalInvocationID.x);
     if (i < questions.length()) {
-        answers[i] = ws_shadow_end_at(questions[i].p.xyz, questions[i].normal.xyz, bias);
+        answers[i] = ws_shadow_end_in_image(questions[i].p.xyz, questions[i].normal.xyz, bias);
     }
 }
 )");
